@@ -50,7 +50,7 @@ pub(crate) const VORTEX_FILTER: Key = key(
     Holds::Choice(&["robust", "published", "centroid"]),
     "",
     Value("\"robust\""),
-    "How the hub vortex is found: weighted, with the filter's delay made good in the phase, as in the paper (fast region, delay left in), or in its place the centroid of the wind over the disc, which goes with the amplitude of the helix.",
+    "How the hub vortex is found: weighted, with the filter's delay made good in the phase, as in the paper (fast region, delay left in), or in its place the centroid of the wind over the disc, which grows with the amplitude of the helix.",
 );
 pub(crate) const VORTEX_CENTRE: Key = key(
     "vortex_centre",

@@ -62,8 +62,7 @@ impl HubVortexSettings {
         Self { search, compensates: true, ..source }
     }
 
-    /// One of the whole wake over the disc of a rotor of `radius` (m): linear in the helix, its delay made
-    /// good.
+    /// One of the whole wake over the disc of a rotor of `radius` (m), its delay made good.
     pub fn centroid(frame: HelixFrame, radius: f64, interval: f64) -> Self {
         let source = Self::of_source(frame, radius, interval);
         // A point on the disc's rim counts whatever its last digits are.
@@ -235,7 +234,7 @@ impl HubVortexFilter {
 
     /// Whether places count as much as they are sure.
     fn is_weighted(&self) -> bool {
-        matches!(self.settings.search.method, Method::Jet { .. })
+        !matches!(self.settings.search.method, Method::FastRegion { .. })
     }
 
     /// What the low-pass filter takes in at `time` (s) of what was `found`.
@@ -302,7 +301,10 @@ impl HubVortexFilter {
             let weight = if self.is_weighted() { sample.weight } else { 1.0 };
             sums.add(share * weight, sample.place, turn);
         }
-        if self.is_weighted() { sums.centre() } else { sums.mean() }
+        match self.settings.search.method {
+            Method::Jet { .. } => sums.centre(),
+            Method::FastRegion { .. } | Method::Centroid => sums.mean(),
+        }
     }
 
     /// Tilt and yaw in the helix frame of the place `now`, at `time` (s).

@@ -29,10 +29,11 @@ pub enum Method {
         width: f64,
     },
     /// Centroid of the wind over the points, less that of the points: what moves it is the fast side of the
-    /// whole wake, hub vortex and all. Of a wake that a helix displaces it goes with the amplitude where the
+    /// whole wake, hub vortex and all. Of a wake that a helix displaces it grows with the amplitude where the
     /// place of a jet does not: beyond some degrees wind from outside passes near the axis on one side. It is
     /// a measure of the displacement, smaller than that itself, and wind that varies over the disc by
-    /// itself (shear, eddies) moves it too. Speeds are taken for the cosine of an axial wind.
+    /// itself (shear, eddies) moves it too. Speeds are taken for the cosine of an axial wind: wind across the
+    /// beams adds to it. It wants the whole disc: a side without points hides a side of the wake.
     Centroid,
 }
 
@@ -155,7 +156,7 @@ impl Finder {
         let mean = |of: fn(&Point) -> f64| self.points.iter().map(of).sum::<f64>() / n;
         let middle = [mean(|point| point.place[0]), mean(|point| point.place[1])];
         let (speed, time) = (mean(|point| point.speed), mean(|point| point.time));
-        // Less the points' own middle: what is lost on one side is no displacement.
+        // Less the points' own middle: points that are lost have one, and even wind has no displacement.
         let mut place = [0.0; 2];
         for point in &self.points {
             for axis in 0..2 {

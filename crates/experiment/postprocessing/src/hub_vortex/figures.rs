@@ -95,7 +95,9 @@ pub(crate) struct Seen {
 pub(crate) fn seen(run: &str, sampled: &Sampled) -> Seen {
     let stored = &sampled.stored;
     let (turbine, lidar) = (&stored.turbine, &stored.sensor);
-    let filters = vec![VortexFilter::Robust];
+    // As the controller saw it, where one did.
+    let filter = sampled.filter.unwrap_or(VortexFilter::Robust);
+    let filters = vec![filter];
     let question = HubVortexQuestion { filters, ..HubVortexQuestion::default() };
     // A record that is too short after its spin-up still has places to mark.
     let early = HubVortexQuestion { from: Some(0.0), ..question.clone() };
@@ -111,10 +113,11 @@ pub(crate) fn seen(run: &str, sampled: &Sampled) -> Seen {
         name: format!("scan-pattern-{place}"),
         title: format!("The scan of {lidar} on {turbine}, and the hub vortex in it"),
         caption: format!(
-            "Looking downwind from the rotor, whose rim is dashed: {} points ({}), {:.2} D along the lines of sight. The hub vortex by the robust filter, over the last periods of the helix.",
+            "Looking downwind from the rotor, whose rim is dashed: {} points ({}), {:.2} D along the lines of sight. The hub vortex by the {} filter, over the last periods of the helix.",
             sampled.points.len(),
             stored.pattern,
-            sampled.range() / stored.rotor_diameter
+            sampled.range() / stored.rotor_diameter,
+            filter.name()
         ),
         radius,
         is_close: false,
@@ -159,9 +162,10 @@ pub(crate) fn of_runs(runs: Vec<Seen>) -> Option<Signals> {
 fn cycle_caption(sampled: &Sampled, found: Option<&HubVortexAnswer>) -> String {
     let what = match found {
         Some(found) => format!(
-            "Speeds along the lines of sight at eight phases of the last whole cycle of the helix ({}, {:.2} mHz), looking downwind; ringed: the hub vortex as it is found in that scan.",
+            "Speeds along the lines of sight at eight phases of the last whole cycle of the helix ({}, {:.2} mHz), looking downwind; ringed: the hub vortex as the {} filter finds it in that scan.",
             found.frame.sense,
-            1e3 * found.frame.rate / TAU
+            1e3 * found.frame.rate / TAU,
+            found.tracks[0].filter.name()
         ),
         None => "Speeds along the lines of sight in the last scan, looking downwind.".to_owned(),
     };

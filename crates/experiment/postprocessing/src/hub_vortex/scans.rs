@@ -1,6 +1,6 @@
 //! The scans that a question about a hub vortex is put to, as a controller would have seen them.
 
-use super::HubVortexQuestion;
+use super::{HubVortexQuestion, VortexFilter};
 use crate::PostprocessingError;
 use crate::error::case_of;
 use crate::phase::query::folder_of;
@@ -28,6 +28,8 @@ pub(crate) struct Sampled {
     pub(super) samples: Vec<(f64, usize)>,
     /// What the hub vortex's circle is taken to be about (m), where the controller was told.
     pub(super) centre: Option<[f64; 2]>,
+    /// How the controller found the hub vortex, where it looked for one.
+    pub(super) filter: Option<VortexFilter>,
     /// Where the analysed time begins (s).
     pub(crate) spin_up: f64,
     /// The file.
@@ -97,6 +99,8 @@ impl Sampled {
             [left, up] => Some([*left, *up]),
             _ => None,
         };
+        let named = values.word("vortex_filter");
+        let filter = VortexFilter::ALL.into_iter().find(|filter| filter.name() == named);
         let (first, last) = (stored.times.first(), stored.times.last());
         let spacing = first
             .zip(last)
@@ -108,7 +112,7 @@ impl Sampled {
         let nearest = (0..stored.n_ranges).min_by(|a, b| off(a).total_cmp(&off(b)));
         let points = stored.points_at(nearest.unwrap_or(0));
         let samples = sampled(&stored.times, interval);
-        let sampled = Self { stored, points, interval, samples, centre, spin_up, path };
+        let sampled = Self { stored, points, interval, samples, centre, filter, spin_up, path };
         if sampled.samples.len() < 2 {
             let fix = "make a longer run (time.duration), or ask for a shorter --interval";
             return Err(sampled.refused("which are too few to follow anything", fix));

@@ -9,7 +9,6 @@ use super::harmonics::{
 use super::narrow::Narrow;
 use super::segment::Segment;
 use crate::pool::Pool;
-use basis::Vector3;
 use std::f64::consts::PI;
 
 /// Kinds of segments by their length, each with boxes of its own: in a tangled wake a few are so long that
