@@ -46,6 +46,8 @@ pub mod structure;
 mod studies;
 pub mod synthesis;
 pub mod tuning;
+pub mod tunnel;
+pub mod wake_analysis;
 
 pub use list::{ELSEWHERE, VALIDATIONS};
 use record::{Record, RecordError};

@@ -1,6 +1,7 @@
 //! All validations, in the order in which they are listed.
 
 mod elsewhere;
+mod tunnel;
 mod vortices;
 
 use crate::{
@@ -190,6 +191,8 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "helix",
         recorded: include_str!("../recorded/helix-in-atmosphere.toml"),
     },
+    tunnel::TURBINE,
+    tunnel::HELIX,
     Validation {
         name: "structure",
         about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",
@@ -360,6 +363,15 @@ pub const VALIDATIONS: &[Validation] = &[
         pictures: None,
         page: "tuning",
         recorded: include_str!("../recorded/tuning.toml"),
+    },
+    Validation {
+        name: "wake-analysis",
+        about: "analyses of wakes on fields whose answers are known: vortices, leapfrogging pairs, phases, particles, fluxes, modes; budget of a lattice wake",
+        cost: Cost::Minutes(3),
+        run: crate::wake_analysis::wake_analysis,
+        pictures: None,
+        page: "wake-analysis",
+        recorded: include_str!("../recorded/wake-analysis.toml"),
     },
 ];
 

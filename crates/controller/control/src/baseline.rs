@@ -24,8 +24,9 @@ use lti::LowPass;
 use pitch::Pitch;
 pub(crate) use pitch::least_pitch;
 use serde::{Deserialize, Serialize};
-use speed::{SpeedFilter, Wind};
-use torque::Torque;
+pub(crate) use speed::SpeedFilter;
+use speed::Wind;
+pub(crate) use torque::Torque;
 use tower::TowerDamper;
 
 /// Least distance of torque control's speed reference below pitch control's, relative to rated speed (–).

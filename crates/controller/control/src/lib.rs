@@ -14,6 +14,7 @@ pub mod derate;
 pub mod discon;
 mod error;
 mod excitation;
+pub mod held_speed;
 pub mod helix;
 mod keys;
 mod kind;
@@ -37,6 +38,7 @@ pub use derate::Derate;
 pub use discon::Discon;
 pub use error::ControlError;
 pub use excitation::{Excitation, OnTop, excitation_rate};
+pub use held_speed::HeldSpeed;
 pub use helix::Helix;
 pub use kind::{
     Control, ControllerKind, FurtherSensor, Identification, Motion, Pitching, Place, Site,
@@ -56,6 +58,7 @@ use basis::registry::Registry;
 /// [adds](Registry::add) its own.
 pub static CONTROLLERS: Registry<dyn ControllerKind> = Registry::new(&[
     &baseline::BASELINE,
+    &held_speed::HELD_SPEED,
     &helix::HELIX,
     &pulse::PULSE,
     &phase_sync::PHASE_SYNC,

@@ -1,13 +1,22 @@
 //! Analysis of records: means with their uncertainty, spectra, fatigue, delivered pitch, phases, wakes.
 
+pub mod entrainment;
 pub mod fatigue;
+pub mod grids;
+pub mod isosurface;
 pub mod lateral;
 pub mod line;
+#[cfg(feature = "modes")]
+pub mod modes;
+pub mod particles;
 pub mod phase;
+pub mod phases;
 pub mod pitch;
+mod small;
 pub mod smooth;
 pub mod spectra;
 pub mod statistics;
+pub mod vortices;
 pub mod wake;
 
 use thiserror::Error;

@@ -179,6 +179,8 @@ pub struct Time {
     pub spin_up: f64,
     /// In all, spin-up included (s).
     pub duration: f64,
+    /// Length of the blocks whose means are taken as independent (s).
+    pub block: f64,
 }
 
 /// One turbine in the layout.

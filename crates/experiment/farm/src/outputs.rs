@@ -22,8 +22,8 @@ pub trait OutputKeys: Named + Any + Sync {
     }
 }
 
-/// The kinds of outputs that a case can ask for by a name. None comes with the program yet; programs built on
-/// it add their own.
+/// The kinds of outputs that a case can ask for by a name. Those of the program are added by who writes them,
+/// a study; programs built on it add their own.
 pub static OUTPUTS: Registry<dyn OutputKeys> = Registry::new(&[]);
 
 /// An output that a case asks for.

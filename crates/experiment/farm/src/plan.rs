@@ -38,6 +38,8 @@ pub const MOST_LEVELS: u32 = 4;
 /// Step of turbines in prescribed wind unless the case says otherwise (s): a thirtieth of the fastest period
 /// that carries load.
 pub const PRESCRIBED_STEP: f64 = 0.02;
+/// Farthest that a small, fast rotor turns in such a step in the mean wind (rad).
+pub const FARTHEST_PRESCRIBED_TURN: f64 = 0.05;
 /// Time between rows of the series in prescribed wind unless the case says otherwise (s).
 pub const PRESCRIBED_ROW: f64 = 0.1;
 
@@ -235,19 +237,30 @@ fn stride(duration: f64, interval: f64) -> u64 {
 /// None: every layout fits.
 pub fn without_cells(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
     let positions = layout.positions.clone();
-    Ok(without_air(case, layout.diameter(), layout.hub_height(), positions))
+    let rotor_speed = |footprint: &Footprint| 2.0 * footprint.tip_speed / footprint.diameter;
+    let fastest = layout.machines.iter().map(|(_, one)| rotor_speed(one)).fold(0.0, f64::max);
+    let step = prescribed_step(fastest);
+    Ok(without_air(case, layout.diameter(), layout.hub_height(), positions, step))
 }
 
-/// The same for a first turbine of `diameter` (m) and `hub_height` (m).
+/// Step (s) in prescribed wind of rotors of which the fastest turns at `rotor_speed` (rad/s).
+pub(crate) fn prescribed_step(rotor_speed: f64) -> f64 {
+    PRESCRIBED_STEP.min(FARTHEST_PRESCRIBED_TURN / rotor_speed)
+}
+
+/// The same for a first turbine of `diameter` (m) and `hub_height` (m), in steps of `step` (s) unless the case
+/// says otherwise.
 pub(crate) fn without_air(
     case: &Case,
     diameter: f64,
     hub_height: f64,
     positions: Vec<Vector3>,
+    step: f64,
 ) -> Plan {
-    let interval = case.flow.step.unwrap_or(PRESCRIBED_STEP);
+    let interval = case.flow.step.unwrap_or(step);
     let n_spin_up_steps = (case.time.spin_up / interval).round() as u64;
-    let row_stride = stride(case.output.interval.unwrap_or(PRESCRIBED_ROW), interval);
+    let row_stride =
+        stride(case.output.interval.unwrap_or(PRESCRIBED_ROW / PRESCRIBED_STEP * step), interval);
     Plan {
         origin: Vector3::ZERO,
         spacing: 0.0,

@@ -4,9 +4,10 @@ use crate::turbine_file::{self, TurbineFile, TurbineFileError};
 use std::path::Path;
 
 /// Name and file of each turbine.
-const TURBINES: [(&str, &str); 3] = [
+const TURBINES: [(&str, &str); 4] = [
     ("iea-15mw", include_str!("../../../../turbines/iea-15mw.toml")),
     ("iea-22mw", include_str!("../../../../turbines/iea-22mw.toml")),
+    ("mowito-06", include_str!("../../../../turbines/mowito-06.toml")),
     ("nrel-5mw", include_str!("../../../../turbines/nrel-5mw.toml")),
 ];
 
@@ -50,7 +51,8 @@ mod tests {
             ("iea-22mw", 22e6, 282.3, 170.0, 82.3e3, 0.01),
             ("nrel-5mw", 5e6, 125.9, 90.0, 17.74e3, 0.01),
         ];
-        assert_eq!(names().count(), published.len());
+        // One more, of a wind tunnel.
+        assert_eq!(names().count(), published.len() + 1);
         for (name, power, diameter, height, mass, margin) in published {
             let file = load(name).unwrap();
             let definition = &file.definition;
@@ -70,11 +72,29 @@ mod tests {
     }
 
     #[test]
+    fn the_tunnel_turbine_stands_as_published() {
+        // van der Hoek et al. (2024): diameter, electrical power coefficient at tip-speed ratio 5 in 5 m/s,
+        // and motors to and fro by 216° at 2.41 Hz, which they just followed.
+        let TurbineFile { definition, controller, .. } = load("mowito-06").unwrap();
+        assert!((definition.rotor_diameter() - 0.58).abs() < 1e-12);
+        assert_eq!(controller.optimal_tip_speed_ratio, 5.0);
+        let speed = 5.0 * 5.0 / 0.29;
+        let power = definition.efficiency() * controller.torque_gain * f64::powi(speed, 3);
+        let coefficient = power / (0.5 * 1.225 * definition.rotor_area() * 125.0);
+        assert!((coefficient - 0.27).abs() < 1e-3, "{coefficient}");
+        let plate = definition.swashplate.unwrap();
+        let fastest = 216.0_f64.to_radians() * std::f64::consts::TAU * 2.41;
+        let limit = definition.pitch_actuator.maximum_rate * plate.motor_ratio();
+        assert!((1.0..1.05).contains(&(limit / fastest)), "{}", limit / fastest);
+        assert!((plate.amplitude_of(std::f64::consts::PI).to_degrees() - 2.25).abs() < 1e-3);
+    }
+
+    #[test]
     fn what_is_not_there_is_said_with_what_is() {
         let error = load("iea-10mw").unwrap_err();
         assert_eq!(error.to_string(), "no turbine is called \"iea-10mw\"");
         let TurbineFileError::Unknown { fix, .. } = error else { panic!("{error}") };
-        assert!(fix.contains("iea-15mw, iea-22mw, nrel-5mw"));
+        assert!(fix.contains("iea-15mw, iea-22mw, mowito-06, nrel-5mw"));
         assert!(matches!(load("nowhere/t.toml"), Err(TurbineFileError::Unreadable { .. })));
     }
 }

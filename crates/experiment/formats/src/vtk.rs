@@ -1,8 +1,10 @@
-//! Volumes as VTK image data (`.vti`) for ParaView: XML with the numbers appended raw.
+//! Volumes, surfaces and lines in VTK's formats for ParaView: XML with the numbers appended raw.
 
 mod filaments;
+mod surface;
 
 pub use filaments::{filament_bytes, read_filaments, write_filaments};
+pub use surface::write_surface;
 
 use crate::FileError;
 use crate::atomic::AtomicFile;

@@ -161,6 +161,17 @@ pub enum PostprocessingError {
         /// What to do.
         fix: String,
     },
+    /// Fields of a wake do not do.
+    #[error("{} {problem}", path.display())]
+    #[diagnostic(help("{fix}"))]
+    Fields {
+        /// Folder of the run, or the file.
+        path: PathBuf,
+        /// What about them, such as `does not tell the rotor diameter`.
+        problem: String,
+        /// What to do.
+        fix: String,
+    },
     /// A series lacks a channel.
     #[error("{} has no channel `{channel}`", told(path))]
     #[diagnostic(help(

@@ -1,5 +1,5 @@
 //! What records of runs tell afterwards: the phase of a helix, gains over several winds, what a loop would
-//! lock to; and the report.
+//! lock to; the wake by phases, its energy, vortices and modes; and the report.
 //!
 //! Records in, numbers out: nothing is simulated here. [`ANALYSES`] lists what `wakemix analyse` offers.
 
@@ -15,6 +15,7 @@ mod seeds;
 mod signals;
 mod sweep;
 mod synchronisation;
+mod wake_fields;
 mod winds;
 
 pub use analyses::{ANALYSES, Analysis};

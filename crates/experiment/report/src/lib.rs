@@ -10,6 +10,7 @@ mod sentence;
 mod study;
 pub mod text_table;
 mod trace;
+mod units;
 mod words;
 
 pub use answer::{AnswerRecords, AnswerTable};
@@ -19,14 +20,15 @@ pub use figures::synchronisation::{
     Along, CentreLine, CurveAt, CurveEnd, CurveFigure, CurvePanel, CurvePoint, DeficitFigure,
     DeficitLine, DeficitPanel, DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath,
     DiscPoint, MapFigure, MapPanel, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
-    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, Synchronisation,
-    TrackFigure, TrackLine, TrackRow,
+    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, SurfaceFigure,
+    SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+pub use units::are_of_models;
 
 /// Files written by this process so far (–).
 static N_WRITTEN: AtomicU64 = AtomicU64::new(0);

@@ -3,7 +3,7 @@
 
 use crate::StudyError;
 use crate::prepared::Prepared;
-use analysis::statistics::{BLOCK_LENGTH, statistic};
+use analysis::statistics::statistic;
 use basis::records::{Series, Statistic};
 use formats::records::{RunFolder, SeriesFile};
 use std::collections::BTreeSet;
@@ -27,6 +27,8 @@ pub(crate) struct Columns {
     source: Source,
     first: usize,
     interval: f64,
+    /// Length of blocks (s).
+    block: f64,
     /// Most columns in memory.
     n_most: usize,
     /// Channels that will be asked for together, in the order in which they will be.
@@ -54,6 +56,7 @@ impl Columns {
         Ok(Self {
             first: first_row(setup),
             interval: plan.row_interval(),
+            block: setup.case.time.block,
             n_most: budget / (size_of::<f64>() * file.n_rows().max(1)),
             expected: Vec::new(),
             held: Series::default(),
@@ -67,6 +70,7 @@ impl Columns {
             source: Source::Memory,
             first: first_row(setup),
             interval: setup.plan.row_interval(),
+            block: setup.case.time.block,
             n_most: usize::MAX,
             expected: Vec::new(),
             held: series,
@@ -106,7 +110,8 @@ impl Columns {
             self.held = Series::default();
             self.held = file.read(|name| group.contains(name))?;
         }
-        Ok(Analysed { series: &self.held, first: self.first, interval: self.interval })
+        let Self { first, interval, block, .. } = *self;
+        Ok(Analysed { series: &self.held, first, interval, block })
     }
 }
 
@@ -149,13 +154,15 @@ pub(crate) struct Analysed<'a> {
     pub(crate) first: usize,
     /// Time between rows (s).
     pub(crate) interval: f64,
+    /// Length of the blocks that intervals are made of (s).
+    pub(crate) block: f64,
 }
 
 impl<'a> Analysed<'a> {
     /// All of a series whose rows lie `interval` (s) apart.
     #[cfg(test)]
     pub(crate) fn whole(series: &'a Series, interval: f64) -> Self {
-        Self { series, first: 0, interval }
+        Self { series, first: 0, interval, block: analysis::statistics::BLOCK_LENGTH }
     }
 
     /// Whether the channel `name` is there.
@@ -174,7 +181,7 @@ impl<'a> Analysed<'a> {
 
     /// Mean and deviation of the channel `name`.
     pub(crate) fn statistic(&self, name: &str) -> Result<Statistic, StudyError> {
-        Ok(statistic(self.column(name)?, self.interval, BLOCK_LENGTH)?)
+        Ok(statistic(self.column(name)?, self.interval, self.block)?)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::{Outputs, outb, series, volumes};
+use crate::outputs::{Outputs, outb, phase_averages, series, volumes};
 use crate::prepared::Prepared;
 use farm::case::Solver;
 use farm::pitch_response::IdentificationCost;
@@ -91,7 +91,10 @@ impl Prepared {
             updates: plan.effort().until(plan.n_steps),
             interval: plan.interval,
             n_steps: plan.n_steps,
-            memory: field + turbulence.unwrap_or(0) + volumes::memory(self),
+            memory: field
+                + turbulence.unwrap_or(0)
+                + volumes::memory(self)
+                + phase_averages::memory(self),
             disk: disks().max().unwrap_or(0),
             n_rows: series::n_rows(self),
             row: open.iter().map(|&index| self.row_of_run(index)).max().unwrap_or(0),

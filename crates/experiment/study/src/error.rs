@@ -75,6 +75,13 @@ pub enum StudyError {
     /// The records of a run cannot be analysed.
     #[error("the records cannot be analysed")]
     Analysis(#[from] AnalysisError),
+    /// Velocity cannot be averaged by phase.
+    #[error("velocity cannot be averaged by phase")]
+    Phases(#[source] analysis::phases::PhaseError),
+    /// A stored average by phase has other points or bins.
+    #[error("the checkpoint does not fit the averages by phase that the case asks for")]
+    #[diagnostic(help("{}", MADE_OTHERWISE))]
+    OtherAverages,
     /// A stored average does not fit the grid.
     #[error("the checkpoint does not fit the grid")]
     #[diagnostic(help("{}", MADE_OTHERWISE))]

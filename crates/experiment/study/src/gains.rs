@@ -1,12 +1,12 @@
 //! Gains of a run over the run that it compares with, whenever that was made.
 
-use crate::columns::{Columns, add_to};
+use crate::columns::{Analysed, Columns, add_to};
 use crate::loads;
 use crate::prepared::Prepared;
 use crate::same_case::{WindDigests, check_same};
 use crate::{Observer, StudyError};
 use analysis::AnalysisError;
-use analysis::statistics::{BLOCK_LENGTH, gain};
+use analysis::statistics::gain;
 use basis::channels::GEN_PWR;
 use basis::records::{Statistic, Summary, TurbineSummary, Warning, WarningKind};
 use farm::case::Run;
@@ -84,7 +84,7 @@ pub(crate) fn add(
         let channel = power(&turbine.name);
         let (now, before) = (own.of(&channel)?, there.of(&channel)?);
         let (own_power, power) = (now.column(&channel[0])?, before.column(&channel[0])?);
-        turbine.power_gain = defined(gain(own_power, power, now.interval, BLOCK_LENGTH))?;
+        turbine.power_gain = defined(gain(own_power, power, now.interval, now.block))?;
         if turbine.power_gain.is_none() {
             undefined.push(not_defined(run, other, Some(&turbine.name)));
         }
@@ -98,8 +98,8 @@ pub(crate) fn add(
         }
     }
     if is_alike {
-        let interval = own.of(&[])?.interval;
-        summary.array_power_gain = defined(gain(&own_array, &array, interval, BLOCK_LENGTH))?;
+        let Analysed { interval, block, .. } = own.of(&[])?;
+        summary.array_power_gain = defined(gain(&own_array, &array, interval, block))?;
         // Where no turbine feels another nobody is shown a gain of all.
         if summary.array_power_gain.is_none() && summary.has_wakes() {
             undefined.push(not_defined(run, other, None));

@@ -8,7 +8,7 @@ use analysis::fatigue::{
     BEARING_SLOPE, N_BEARING_POSITIONS, PitchBearing, PitchTravel, REFERENCE_FREQUENCY,
     damage_equivalent_load,
 };
-use analysis::statistics::{BLOCK_LENGTH, change, standard_deviation};
+use analysis::statistics::{change, standard_deviation};
 use basis::channels::{BLD_PITCH, ROOT_MXB, ROOT_MYB, Unit};
 use basis::records::{BearingLoad, Load, LoadKind, PitchDuty};
 
@@ -104,7 +104,7 @@ pub(crate) fn compare(
     let interval = analysed.interval;
     for load in loads.iter_mut().filter(|load| load.channel == *channel) {
         let of = |samples: &[f64]| figure(load.kind, samples, interval);
-        load.change = match change(now, before, interval, BLOCK_LENGTH, of) {
+        load.change = match change(now, before, interval, analysed.block, of) {
             Ok(change) => Some(change),
             // A moment that rested has no ratio to it.
             Err(AnalysisError::NoReference) => None,

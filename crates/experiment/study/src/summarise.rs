@@ -10,7 +10,7 @@ use crate::tips::Outrun;
 use crate::warnings::SetupWarning;
 use analysis::AnalysisError;
 use analysis::pitch::{Motion, delivered};
-use analysis::statistics::{BLOCK_LENGTH, mean, statistic};
+use analysis::statistics::{mean, statistic};
 use basis::Channel;
 use basis::channels::{AZIMUTH, BLD_PITCH, GEN_PWR, NAC_YAW, ROT_SPEED, RT_AERO_FXH, TIME, WIND_U};
 use basis::records::{
@@ -66,7 +66,7 @@ pub(crate) fn summarise(
         compare_with: None,
         conditions: conditions(&analysed, setup)?,
         flow: Some(flow(setup)),
-        array_power: statistic(&array, analysed.interval, BLOCK_LENGTH)?,
+        array_power: statistic(&array, analysed.interval, analysed.block)?,
         array_power_gain: None,
         turbines,
         cost,
@@ -310,7 +310,7 @@ fn collective_pitch(
             *mean += pitch / n_blades as f64;
         }
     }
-    Ok(statistic(&mean, analysed.interval, BLOCK_LENGTH)?)
+    Ok(statistic(&mean, analysed.interval, analysed.block)?)
 }
 
 /// How the tip of the turbine at `index` exceeded the speed of sound of the solver's air in the analysed

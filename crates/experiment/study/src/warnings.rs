@@ -52,10 +52,12 @@ pub(crate) fn of(case: &Case, plan: &Plan) -> Vec<SetupWarning> {
     warnings.extend(of_domain(case, plan));
     warnings.extend(of_cost(case, plan));
     warnings.extend(of_places(case));
-    let blocks = (case.time.duration - case.time.spin_up) / analysis::statistics::BLOCK_LENGTH;
+    let length = case.time.block;
+    let blocks = (case.time.duration - case.time.spin_up) / length;
     if blocks < BLOCKS_TO_WARN {
         warnings.push(format!(
-            "{blocks:.1} blocks of ten minutes are analysed; with fewer than {BLOCKS_TO_WARN:.0} the intervals say little"
+            "{blocks:.1} blocks of {} are analysed; with fewer than {BLOCKS_TO_WARN:.0} the intervals say little",
+            if length == 600.0 { "ten minutes".to_owned() } else { format!("{length} s") }
         ));
     }
     let mut warnings: Vec<SetupWarning> = warnings.into_iter().map(SetupWarning::from).collect();

@@ -1,5 +1,9 @@
 //! Pitch actuators: second-order lag with limits of rate and position.
 
+mod swashplate;
+
+pub use swashplate::{Drive, N_RODS, Swashplate, SwashplateState, lead_of};
+
 use crate::breakdown::within;
 use lti::lag::free_response;
 use serde::{Deserialize, Serialize};

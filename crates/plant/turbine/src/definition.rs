@@ -4,7 +4,7 @@
 //! positive when they carry the blade tips *away from the tower*; twist and pitch are positive to feather.
 
 use crate::Polar;
-use crate::actuators::PitchActuator;
+use crate::actuators::{PitchActuator, Swashplate};
 use basis::Vector3;
 
 /// One turbine as plain data, SI and radians.
@@ -30,8 +30,10 @@ pub struct Definition {
     pub nacelle: Nacelle,
     /// Gearbox, shaft and generator.
     pub drive_train: DriveTrain,
-    /// Pitch actuator of each blade.
+    /// Pitch actuator of each blade; with a swashplate of each of its rods, in collective pitch.
     pub pitch_actuator: PitchActuator,
+    /// The swashplate that pitches all blades; absent where each has an actuator of its own.
+    pub swashplate: Option<Swashplate>,
     /// Between which mean wind speeds it works; absent where the source does not tell.
     pub operation: Option<Operation>,
     /// Electrical power at rated (W).

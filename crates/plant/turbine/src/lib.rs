@@ -21,5 +21,6 @@ pub use breakdown::Breakdown;
 pub use definition::Definition;
 pub use rotor::Frame;
 pub use turbine::{
-    Induction, LONGEST_STRUCTURAL_STEP, N_ELEMENTS, Turbine, TurbineSettings, TurbineState,
+    FARTHEST_STRUCTURAL_STEP, Induction, LONGEST_STRUCTURAL_STEP, N_ELEMENTS, Turbine,
+    TurbineSettings, TurbineState,
 };

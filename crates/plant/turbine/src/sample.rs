@@ -116,6 +116,7 @@ pub fn definition() -> Definition {
             minimum_pitch: -0.1,
             maximum_pitch: 1.5,
         },
+        swashplate: None,
         operation: None,
         rated_power: 2e6,
         rated_rotor_speed: 1.5,

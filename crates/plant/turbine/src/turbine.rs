@@ -4,6 +4,7 @@
 mod aerodynamics;
 mod answering;
 mod nacelle;
+mod pitching;
 mod separation;
 mod set_up;
 mod settings;
@@ -22,9 +23,9 @@ use crate::structure::{
     AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
+use basis::{Answer, Channel, Commands, PointForce, Truth, Vector3};
 use nacelle::Facing;
-use set_up::{all_but_the_generator, frame_at, lengths};
+use set_up::{all_but_the_generator, frame_at, lengths, longest_step};
 use state::Readings;
 use std::sync::Arc;
 use workspace::Workspace;
@@ -35,6 +36,9 @@ pub const N_ELEMENTS: usize = 32;
 /// blades' second flapwise one. Longer intervals are cut into equal steps, over which the wind at each
 /// element is held.
 pub const LONGEST_STRUCTURAL_STEP: f64 = 0.025;
+/// Farthest that a small, fast rotor turns in such a step at rated speed (rad): its modes are as much faster
+/// as it turns faster. Rotors that make less than 19 turns a minute never come so far.
+pub const FARTHEST_STRUCTURAL_STEP: f64 = 0.05;
 
 /// A turbine: definition, derived parameters, state, and working memory.
 #[derive(Clone, Debug)]
@@ -94,7 +98,8 @@ impl Turbine {
                 heights: &heights,
             },
         )?;
-        let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start());
+        let plate = definition.swashplate.map(|plate| plate.at_rest(settings.pitch));
+        let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start(), plate);
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };
@@ -172,7 +177,7 @@ impl Turbine {
         answer: Option<Answer<'_>>,
         commands: &Commands,
     ) {
-        let n_steps = (interval / LONGEST_STRUCTURAL_STEP - 1e-9).ceil().max(1.0) as usize;
+        let n_steps = (interval / longest_step(&self.definition) - 1e-9).ceil().max(1.0) as usize;
         let step = interval / n_steps as f64;
         // A generator holds the rotor back and never drives it backwards.
         let turning = self.structure.generator_speed() > 0.0;
@@ -192,9 +197,9 @@ impl Turbine {
             rotor_wind_speed: self.line.mean_axial(element_winds, self.frame.shaft),
             ..Readings::default()
         };
-        let mut limited = false;
+        let (asked, mut limited) = (self.asked(commands), false);
         for index in 0..n_steps {
-            let pitch = self.pitch_blades(step, commands, &mut limited);
+            let pitch = self.pitch_blades(step, &asked, &mut limited);
             self.structure.turn(self.state.nacelle.advance(step, commands.yaw_rate));
             let Workspace { motions, loads, circulations, .. } = &mut self.workspace;
             self.structure.observe(0.5 * step, &pitch, motions);
@@ -328,29 +333,6 @@ impl Turbine {
         self.structure.restore(state.structure.clone());
         self.state = state;
         self.place_stations();
-    }
-
-    /// Advances the pitch actuators by `step` (s); gives pitch in the middle of it.
-    fn pitch_blades(
-        &mut self,
-        step: f64,
-        commands: &Commands,
-        limited: &mut bool,
-    ) -> PerBlade<Pitch> {
-        let actuator = &self.definition.pitch_actuator;
-        let mut blades = self.state.pitch;
-        let mut pitch = PerBlade::splat(blades.len(), Pitch::default());
-        for (index, blade) in blades.iter_mut().enumerate() {
-            let before = *blade;
-            *limited |= actuator.advance(blade, step, commands.pitch[index]);
-            pitch[index] = Pitch {
-                angle: 0.5 * (before.pitch + blade.pitch),
-                rate: (blade.pitch - before.pitch) / step,
-                acceleration: (blade.rate - before.rate) / step,
-            };
-        }
-        self.state.pitch = blades;
-        pitch
     }
 
     /// On return the workspace's motions, stations and their axes are those of now.

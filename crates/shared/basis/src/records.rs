@@ -2,12 +2,16 @@
 
 mod control;
 pub mod examples;
+mod fields;
 mod filaments;
 mod load;
 mod sweep;
 mod warning;
 
 pub use control::{ControlSetting, ControlSummary, Finding, PitchExcitation, SettingValue};
+pub use fields::{
+    Field, FieldSetting, Grid, Moments, PhaseAverages, PhaseBin, STRESSES, stress_of,
+};
 pub use filaments::{Filaments, Piece, PieceKind};
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};

@@ -12,7 +12,7 @@ const POWER_FILTER_CORNER: f64 = 0.2;
 
 /// Low-pass and notch filters on rotor speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SpeedFilter {
+pub(crate) struct SpeedFilter {
     low_pass: Smoother,
     notches: [SecondOrder; MAXIMUM_NOTCHES],
     n_notches: usize,
@@ -20,7 +20,7 @@ pub(super) struct SpeedFilter {
 
 impl SpeedFilter {
     /// Filters that have settled at `rotor_speed` (rad/s).
-    pub(super) fn settled(rotor_speed: f64, constants: &Constants) -> Self {
+    pub(crate) fn settled(rotor_speed: f64, constants: &Constants) -> Self {
         let mut notches = [SecondOrder::default(); MAXIMUM_NOTCHES];
         for (filter, notch) in notches.iter_mut().zip(&constants.speed_notches) {
             let (numerator, denominator) = (notch.numerator_damping, notch.denominator_damping);
@@ -34,7 +34,7 @@ impl SpeedFilter {
     }
 
     /// Filtered rotor speed (rad/s) after `interval` (s) of `rotor_speed` (rad/s).
-    pub(super) fn update(&mut self, interval: f64, rotor_speed: f64) -> f64 {
+    pub(crate) fn update(&mut self, interval: f64, rotor_speed: f64) -> f64 {
         let low = self.low_pass.update(interval, rotor_speed);
         let notches = self.notches.iter_mut().take(self.n_notches);
         notches.fold(low, |speed, notch| notch.update(interval, speed))

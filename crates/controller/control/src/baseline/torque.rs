@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// State of torque control.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Torque {
+pub(crate) struct Torque {
     /// Integral part of the speed controller (N m).
     integral: f64,
     /// Last command (N m).
@@ -14,7 +14,7 @@ pub(super) struct Torque {
 
 impl Torque {
     /// Torque control that has settled at `rotor_speed` (rad/s).
-    pub(super) fn settled(constants: &Constants, rotor_speed: f64) -> Self {
+    pub(crate) fn settled(constants: &Constants, rotor_speed: f64) -> Self {
         let command = greedy(constants, rotor_speed, upper_limit(constants, rotor_speed));
         Self { integral: command, command }
     }
@@ -59,7 +59,7 @@ impl Torque {
 
     /// Torque (N m) for the filtered `rotor_speed` (rad/s) over `interval` (s) that brings the rotor to
     /// `reference` (rad/s).
-    pub(super) fn track(
+    pub(crate) fn track(
         &mut self,
         interval: f64,
         rotor_speed: f64,

@@ -3,6 +3,7 @@
 use super::Discon;
 use crate::Controller;
 use crate::error::ControlError;
+use crate::held_speed::held_or_greedy;
 use crate::keys::BASE;
 use crate::kind::{Control, ControllerKind, Site};
 use crate::library::{Hosted, LibraryError};
@@ -32,12 +33,14 @@ static TABLE: Table = Table {
 const LIBRARY_ABOUT: &str = "The shared library, such as `libdiscon.so`; a path relative to the case file. Each turbine runs a copy, with a state of its own.";
 
 /// What decides pitch and torque under an excitation of `control` on the turbine at `site`: the library that
-/// it names, or greedy control.
+/// it names, or greedy control, with its speed held where that is asked for.
 ///
 /// # Errors
 /// [`ControlError::Library`].
 pub(crate) fn base(control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
-    let Some(hosted) = Hosted::of(control.values()) else { return Ok(site.baseline()) };
+    let Some(hosted) = Hosted::of(control.values()) else {
+        return Ok(held_or_greedy(control.values(), site));
+    };
     let libraries = control.libraries.as_ref().ok_or_else(|| {
         ControlError::Library(LibraryError(format!(
             "nobody opens {}: `libraries` of its `Control` is not set; a study sets it",

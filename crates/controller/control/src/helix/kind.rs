@@ -6,6 +6,7 @@ use crate::Controller;
 use crate::discon::base;
 use crate::error::ControlError;
 use crate::excitation::Excitation;
+use crate::held_speed::{HELD_RATIO, held_twice};
 use crate::keys::{
     AMPLITUDE, BASE, PHASE_RANGE, SENSE, START, STOP, STROUHAL, TILT_PHASE, sense, starts_too_late,
 };
@@ -57,6 +58,7 @@ static TABLE: Table = Table {
         ),
         START,
         STOP,
+        HELD_RATIO,
         BASE[0],
         BASE[1],
         BASE[2],
@@ -80,6 +82,7 @@ impl ControllerKind for HelixKind {
         starts_too_late(values, place.duration)
             .into_iter()
             .chain(chirp::objections(values))
+            .chain(held_twice(values))
             .collect()
     }
 

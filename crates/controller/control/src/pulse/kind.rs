@@ -5,6 +5,7 @@ use crate::Controller;
 use crate::discon::base;
 use crate::error::ControlError;
 use crate::excitation::Excitation;
+use crate::held_speed::{HELD_RATIO, held_twice};
 use crate::keys::{AMPLITUDE, BASE, PHASE_RANGE, START, STOP, STROUHAL, starts_too_late};
 use crate::kind::{Control, ControllerKind, Motion, Pitching, Place, Site};
 use crate::library::Hosted;
@@ -28,6 +29,7 @@ static TABLE: Table = Table {
         key("phase_deg", PHASE_RANGE, "deg", Value("0"), "Phase at time zero."),
         START,
         STOP,
+        HELD_RATIO,
         BASE[0],
         BASE[1],
         BASE[2],
@@ -48,7 +50,7 @@ impl ControllerKind for PulseKind {
     }
 
     fn check(&self, values: &mut Values, place: &Place) -> Vec<Objection> {
-        Vec::from_iter(starts_too_late(values, place.duration))
+        starts_too_late(values, place.duration).into_iter().chain(held_twice(values)).collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {

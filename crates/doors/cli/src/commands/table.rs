@@ -2,13 +2,36 @@
 
 use wakemix::basis::records::{Load, LoadKind, Statistic, Summary, TurbineSummary};
 use wakemix::postprocessing::analyses::with_interval;
+use wakemix::report::are_of_models;
 use wakemix::report::text_table::{Column, TextTable, wrapped};
 
 /// Loads of which the 1-Hz damage-equivalent is printed: heading, channel, what it is.
 const LOADS: [(&str, &str, &str); 2] = [
-    ("flapwise MN m", "RootMyb1", "flapwise at the root of blade 1"),
-    ("tower MN m", "TwrBsMyt", "fore-aft at the tower base"),
+    ("flapwise", "RootMyb1", "flapwise at the root of blade 1"),
+    ("tower", "TwrBsMyt", "fore-aft at the tower base"),
 ];
+
+/// In what a table shows powers, thrusts and moments.
+struct Units {
+    /// Name and size (W) of that of power, and digits behind its point.
+    power: (&'static str, f64, usize),
+    /// The same of thrust (N).
+    thrust: (&'static str, f64, usize),
+    /// Name and size (kN m) of that of moments.
+    moment: (&'static str, f64),
+}
+
+const OF_TURBINES: Units =
+    Units { power: ("kW", 1e3, 0), thrust: ("kN", 1e3, 0), moment: ("MN m", 1e3) };
+const OF_MODELS: Units =
+    Units { power: ("W", 1.0, 3), thrust: ("N", 1.0, 3), moment: ("N m", 1e-3) };
+
+/// What suits the turbines of `summaries`.
+fn units(summaries: &[Summary]) -> &'static Units {
+    let turbines = summaries.iter().flat_map(|summary| &summary.turbines);
+    let is_model = are_of_models(turbines.map(|turbine| turbine.power.mean));
+    if is_model { &OF_MODELS } else { &OF_TURBINES }
+}
 
 /// Runs × turbines in `width` columns: power, gain, thrust, rotor speed; in a further table delivered
 /// excitation, and loads with their changes where any turbine has them; the conditions above, the conventions
@@ -17,21 +40,22 @@ pub(crate) fn render(summaries: &[Summary], width: usize) -> String {
     let Some(first) = summaries.first() else {
         return String::new();
     };
+    let units = units(summaries);
     let loads: Vec<LoadColumn> =
         LOADS.iter().filter_map(|load| LoadColumn::find(load, summaries)).collect();
     let mut columns = vec![
         Column::words("control"),
-        Column::number("power kW"),
+        Column::number(format!("power {}", units.power.0)),
         Column::number("gain %"),
-        Column::number("thrust kN"),
+        Column::number(format!("thrust {}", units.thrust.0)),
         Column::number("rpm"),
         Column::number("pitch delivered").in_new_table(),
     ];
-    columns.extend(loads.iter().flat_map(LoadColumn::columns));
+    columns.extend(loads.iter().flat_map(|load| load.columns(units)));
     let mut table = TextTable::new([Column::words("run"), Column::words("")], columns);
     for summary in summaries {
         for turbine in &summary.turbines {
-            table.row(row(&summary.run, turbine, &loads));
+            table.row(row(&summary.run, turbine, &loads, units));
         }
         // Without wakes no turbine feels another, so that a sum means nothing.
         if summary.has_wakes() {
@@ -39,7 +63,7 @@ pub(crate) fn render(summaries: &[Summary], width: usize) -> String {
                 summary.run.clone(),
                 "all".to_owned(),
                 String::new(),
-                with_interval(&summary.array_power, 1e-3, 0),
+                with_interval(&summary.array_power, 1.0 / units.power.1, units.power.2),
                 percent(summary.array_power_gain.as_ref(), 2),
             ]);
         }
@@ -69,18 +93,22 @@ fn conditions(summary: &Summary) -> String {
         270.0 => String::new(),
         degrees => format!(" from {degrees}°"),
     };
+    let analysed = match wind.duration - wind.spin_up {
+        short if short < 60.0 => format!("{short:.1} s"),
+        long => format!("{:.0} min", long / 60.0),
+    };
     format!(
-        "{:.1} m/s{from}, turbulence intensity {:.1} % target, {:.1} % realised; {:.0} min analysed after {:.0} s; {air}",
+        "{:.1} m/s{from}, turbulence intensity {:.1} % target, {:.1} % realised; {analysed} analysed after {:.0} s; {air}",
         wind.target_wind_speed,
         100.0 * wind.target_turbulence_intensity,
         100.0 * wind.realised_turbulence_intensity,
-        (wind.duration - wind.spin_up) / 60.0,
         wind.spin_up,
     )
 }
 
 /// The cells of `turbine` in the run called `run`.
-fn row(run: &str, turbine: &TurbineSummary, loads: &[LoadColumn]) -> Vec<String> {
+fn row(run: &str, turbine: &TurbineSummary, loads: &[LoadColumn], units: &Units) -> Vec<String> {
+    let Units { power: (_, power, power_digits), thrust: (_, thrust, thrust_digits), .. } = *units;
     let delivered = turbine.delivered_pitch.map_or(String::new(), |pitch| {
         format!("{:.2}° {:.4} Hz", pitch.delivered_amplitude_deg, pitch.frequency_hz)
     });
@@ -88,13 +116,13 @@ fn row(run: &str, turbine: &TurbineSummary, loads: &[LoadColumn]) -> Vec<String>
         run.to_owned(),
         turbine.name.clone(),
         turbine.control.description.clone(),
-        with_interval(&turbine.power, 1e-3, 0),
+        with_interval(&turbine.power, 1.0 / power, power_digits),
         percent(turbine.power_gain.as_ref(), 2),
-        format!("{:.0}", turbine.thrust.mean / 1e3),
+        format!("{:.thrust_digits$}", turbine.thrust.mean / thrust),
         format!("{:.2}", turbine.rotor_speed.mean * 30.0 / std::f64::consts::PI),
         delivered,
     ];
-    cells.extend(loads.iter().flat_map(|load| load.cells(turbine)));
+    cells.extend(loads.iter().flat_map(|load| load.cells(turbine, units)));
     cells
 }
 
@@ -117,15 +145,16 @@ impl<'a> LoadColumn<'a> {
         Some(Self { heading, what, channel, slope })
     }
 
-    fn columns(&self) -> [Column; 2] {
-        [self.heading, "change %"].map(Column::number)
+    fn columns(&self, units: &Units) -> [Column; 2] {
+        let heading = format!("{} {}", self.heading, units.moment.0);
+        [heading, "change %".to_owned()].map(Column::number)
     }
 
-    /// The load of `turbine` (MN m) and its change (%), empty where it has none.
-    fn cells(&self, turbine: &TurbineSummary) -> [String; 2] {
+    /// The load of `turbine` and its change (%), empty where it has none.
+    fn cells(&self, turbine: &TurbineSummary, units: &Units) -> [String; 2] {
         let load = turbine.damage_equivalent(self.channel);
         [
-            load.map_or(String::new(), |load| format!("{:.2}", load.value / 1e3)),
+            load.map_or(String::new(), |load| format!("{:.2}", load.value / units.moment.1)),
             percent(load.and_then(|load| load.change.as_ref()), 1),
         ]
     }

@@ -1,6 +1,7 @@
 //! `wakemix turbine`: the library of turbines, and what blade-element momentum says of them.
 
 mod import;
+mod words;
 
 use super::arguments::{check_free, finite, positive};
 use super::output::{columns, detail, print, print_text};
@@ -18,6 +19,7 @@ use wakemix::study::{OffsetAnswer, OffsetQuestion, azimuth_offset};
 use wakemix::turbine::Definition;
 use wakemix::turbine::aero::blade_element::Theory;
 use wakemix::turbine::steady::{Coefficients, SteadyRotor};
+use words::{blade_mass, power, swashplate};
 
 /// What to do with turbines.
 #[derive(Debug, Subcommand)]
@@ -225,7 +227,7 @@ fn rows(
     definition: &Definition,
     controller: &Constants,
     best: &Coefficients,
-) -> [(&'static str, String); 13] {
+) -> [(&'static str, String); 14] {
     [
         ("blades", definition.n_blades.to_string()),
         (
@@ -260,12 +262,12 @@ fn rows(
         (
             "rated",
             format!(
-                "{:.3} MW at {:.3} rpm",
-                1e-6 * definition.rated_power,
+                "{} at {:.3} rpm",
+                power(definition.rated_power),
                 definition.rated_rotor_speed * 30.0 / std::f64::consts::PI
             ),
         ),
-        ("blade mass", format!("{:.2} t each", 1e-3 * definition.blade_mass())),
+        ("blade mass", blade_mass(definition.blade_mass())),
         (
             "inertia about the shaft",
             format!(
@@ -286,6 +288,7 @@ fn rows(
                 definition.pitch_actuator.maximum_pitch.to_degrees()
             ),
         ),
+        ("swashplate", swashplate(definition)),
         (
             "best tip-speed ratio",
             format!(

@@ -5,7 +5,7 @@ use super::{COUNTED, CalibrationError, Course, IdentificationCost, answers};
 use crate::Progress;
 use crate::assemble::TurbineModel;
 use crate::case::{Case, Solver};
-use crate::plan::{Plan, without_air};
+use crate::plan::{Plan, prescribed_step, without_air};
 use control::excitation_rate;
 use control::meandering::Decoupling;
 
@@ -65,7 +65,7 @@ pub(super) fn found_offset(
     rate: f64,
     progress: Progress,
 ) -> Result<f64, CalibrationError> {
-    let (case, plan) = in_prescribed_wind(case, plan);
+    let (case, plan) = in_prescribed_wind(case, plan, model);
     let [counter_clockwise, clockwise] =
         answers(&case, &plan, model, index, wind_speed, rate, progress)?;
     Ok(Decoupling::from_senses(rate, counter_clockwise, clockwise).azimuth_offset)
@@ -79,7 +79,7 @@ pub(super) fn offset_cost(
     wind_speed: f64,
     rate: f64,
 ) -> IdentificationCost {
-    let (prescribed, steps) = in_prescribed_wind(case, plan);
+    let (prescribed, steps) = in_prescribed_wind(case, plan, model);
     let course = Course::new(wind_speed, &steps, model, rate, COUNTED);
     let cost = course.cost(&prescribed, &steps, model, 2);
     let of_a_step = if case.flow.solver.resolves_induction { UPDATES_OF_A_STEP } else { 1.0 };
@@ -87,7 +87,7 @@ pub(super) fn offset_cost(
 }
 
 /// `case` and its plan in prescribed wind, the turbines as they are.
-fn in_prescribed_wind(case: &Case, plan: &Plan) -> (Case, Plan) {
+fn in_prescribed_wind(case: &Case, plan: &Plan, model: &TurbineModel) -> (Case, Plan) {
     let mut case = case.clone();
     if !case.flow.solver.resolves_induction {
         return (case, plan.clone());
@@ -95,6 +95,7 @@ fn in_prescribed_wind(case: &Case, plan: &Plan) -> (Case, Plan) {
     case.flow.solver = Solver::UNIFORM;
     // That of the case is the lattice's.
     case.flow.step = None;
-    let plan = without_air(&case, plan.diameter, plan.hub_height, plan.positions.clone());
+    let step = prescribed_step(model.rotor_speed(case.wind.speed));
+    let plan = without_air(&case, plan.diameter, plan.hub_height, plan.positions.clone(), step);
     (case, plan)
 }

@@ -50,7 +50,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             step: None,
             threads: None,
         },
-        time: Time { spin_up: 300.0, duration: 1500.0 },
+        time: Time { spin_up: 300.0, duration: 1500.0, block: 600.0 },
         turbines: positions.iter().enumerate().map(placement).collect(),
         runs: vec![Run {
             name: "baseline".to_owned(),
@@ -222,4 +222,18 @@ fn prescribed_wind_needs_no_cells_and_thins_its_rows() {
     case.output.interval = Some(0.05);
     let finer = super::plan(&case, &footprints()).unwrap();
     assert_eq!((finer.n_steps, finer.row_stride), (150_000, 5));
+}
+
+#[test]
+fn rotors_that_turn_fast_take_shorter_steps_in_prescribed_wind() {
+    let mut case = case(&[[0.0, 0.0]]);
+    case.flow.solver = Solver::UNIFORM;
+    // A model of 0.58 m at tip-speed ratio 5 in 5 m/s: 86 rad/s.
+    let footprint = Footprint { diameter: 0.58, hub_height: 1.425, tip_speed: 25.0 };
+    let small = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
+    assert!((small.interval * 25.0 / 0.29 - FARTHEST_PRESCRIBED_TURN).abs() < 1e-12);
+    assert!((small.row_interval() / small.interval - 5.0).abs() < 1e-9);
+    case.flow.step = Some(1e-3);
+    let asked = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
+    assert_eq!(asked.interval, 1e-3);
 }

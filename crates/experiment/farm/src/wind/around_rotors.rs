@@ -17,8 +17,10 @@ use std::sync::Arc;
 const MARGIN: f64 = 0.1;
 /// Points of made turbulence across the largest rotor (–).
 const POINTS_ACROSS: f64 = 24.0;
-/// Time between planes of made turbulence (s).
+/// Time between planes of made turbulence (s),
 const PLANE_INTERVAL: f64 = 0.1;
+/// for models as long as a wind of this speed takes past the rotor (m/s).
+const PASSING_SPEED: f64 = 100.0;
 /// Most memory that making turbulence may take (bytes), however long the run is. A run of one turbine shall
 /// stay below 200 MB (docs/validation/memory.md), the columns of its series included that summary and report
 /// hold.
@@ -88,11 +90,12 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
     let lowest = (low.z - MARGIN * diameter).max(0.5 * across);
     let height = high.z + MARGIN * diameter - lowest;
     let points = |length: f64| (length / across).ceil() as usize + 1;
-    let along = wind.speed * PLANE_INTERVAL;
+    let interval = PLANE_INTERVAL.min(site.plan.diameter / PASSING_SPEED);
+    let along = wind.speed * interval;
     let [n_y, n_z] = [points(2.0 * half_width), points(height)];
     let length = (high.x - low.x) + 2.0 * reach_along(site) + reach_of_wakes(site);
     // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
-    let whole = smooth((case.time.duration / PLANE_INTERVAL + length / along).ceil() as usize);
+    let whole = smooth((case.time.duration / interval + length / along).ceil() as usize);
     let (along, whole, n_across) = match wind.turbulence_model {
         TurbulenceModel::Kaimal => (along, whole, [n_y, n_z]),
         TurbulenceModel::Mann => {

@@ -70,14 +70,16 @@ impl<'a> Section<'a> {
 }
 
 fn time_of(section: &Option<Section>) -> Time {
-    let Some(section) = section else { return Time { spin_up: f64::NAN, duration: f64::NAN } };
+    let Some(section) = section else {
+        return Time { spin_up: f64::NAN, duration: f64::NAN, block: f64::NAN };
+    };
     let (spin_up, duration) = (section.number("spin_up"), section.number("duration"));
     if duration <= spin_up {
         let kind = ProblemKind::NothingAnalysed { duration, spin_up };
         let fix = "raise `duration`; it counts from the start of the run, spin-up included";
         section.findings().note(section.span_of("duration"), kind, Some(fix.into()));
     }
-    Time { spin_up, duration }
+    Time { spin_up, duration, block: section.number("block") }
 }
 
 fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {

@@ -107,7 +107,14 @@ pub(super) static TIME: Table = Table {
             above(0.0, 1e6),
             "s",
             Required,
-            "Time in all, spin-up included; longer than `spin_up`. Intervals need at least two blocks of 10 minutes after it.",
+            "Time in all, spin-up included; longer than `spin_up`. Intervals need at least two blocks of `block` after it.",
+        ),
+        key(
+            "block",
+            above(0.0, 1e5),
+            "s",
+            Value("600"),
+            "Length of the blocks whose means intervals are made of, of power, gains and loads: long beside the time in which wind and wakes forget. Ten minutes suit turbines; models in a wind tunnel take seconds, some twenty times diameter over wind speed.",
         ),
     ],
 };
@@ -252,7 +259,7 @@ pub(super) static OUTPUT: Table = Table {
             "interval",
             above(0.0, 1e3),
             "s",
-            Otherwise("every step of the lattice; 0.1 s in prescribed wind"),
+            Otherwise("every step of the lattice; five steps in prescribed wind, 0.1 s"),
             "Time between rows of the series, rounded to whole steps.",
         ),
         key(
@@ -337,7 +344,7 @@ pub(super) static OUTPUT: Table = Table {
             Holds::Outputs,
             "",
             Otherwise("none"),
-            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. None comes with the program yet; programs built on it add theirs.",
+            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. `phase-averages` comes with the program; programs built on it add theirs.",
         ),
     ],
 };

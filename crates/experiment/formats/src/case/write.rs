@@ -11,6 +11,9 @@ use super::wind::write_wind;
 use farm::case::{Case, Output, Placement, Run};
 use std::fmt::Write;
 
+/// Length of blocks that a case need not say (s).
+const USUAL_BLOCK: f64 = 600.0;
+
 /// The case file that reads back as `case`, with every default written out.
 pub fn write(case: &Case) -> String {
     let mut text = String::new();
@@ -28,6 +31,10 @@ fn write_to(text: &mut String, case: &Case) -> std::fmt::Result {
     write_flow(text, &case.flow)?;
     writeln!(text, "\n[time]")?;
     writeln!(text, "spin_up = {:?}\nduration = {:?}", case.time.spin_up, case.time.duration)?;
+    // Only where it is another, so that the fingerprint of a case without it stays what it was.
+    if case.time.block != USUAL_BLOCK {
+        writeln!(text, "block = {:?}", case.time.block)?;
+    }
     for turbine in &case.turbines {
         write_turbine(text, turbine)?;
     }

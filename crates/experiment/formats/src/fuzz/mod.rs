@@ -10,6 +10,7 @@ mod cases;
 mod damage;
 mod decks;
 mod desk;
+mod fields;
 pub(crate) mod memory;
 mod nesting;
 pub(crate) mod numbers;

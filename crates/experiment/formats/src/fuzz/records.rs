@@ -6,10 +6,12 @@ use crate::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use crate::netcdf::{Column, TimeHeight, read_statistics, write_statistics};
 use crate::records::{
     self, AtPhase, Manifest, PlaneSetting, RunFolder, ScanInstant, ScanSetting, ScanWriter,
-    SeriesWriter, read_scans, read_study,
+    SeriesWriter, StoredPhaseAverages, read_scans, read_study, write_phase_averages,
 };
 use basis::keys::Values;
-use basis::records::{Plane, PlaneAxes, examples};
+use basis::records::{
+    FieldSetting, Grid, Moments, PhaseAverages, PhaseBin, Plane, PlaneAxes, examples,
+};
 use basis::scan::{Scan, ScanLayout};
 use basis::{HelixFrame, Matrix3, Sense, Vector3};
 use farm::case::{Case, Time, Wind};
@@ -111,6 +113,46 @@ fn scans_of_lidars() {
         for index in 0..stored.n_scans() {
             stored.reading(index, 0..stored.n_points(), &mut reading);
         }
+        Ok(())
+    });
+}
+
+/// Averages by phase of two points in two bins.
+fn averages() -> Vec<(&'static str, Vec<u8>)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("averages-line.nc");
+    let (values, grid) =
+        ([9.0_f32; 2], Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [2, 1, 1] });
+    let moments = Moments {
+        n_samples: vec![4; 2],
+        mean: [values; 3].map(Vec::from),
+        stress: [values; 6].map(Vec::from),
+    };
+    let bin = PhaseBin { rotor: 0.1, helix: Some(0.2), n_instants: 4, n_visits: 2 };
+    let head = PhaseAverages {
+        grid,
+        rotor_width: 0.5,
+        helix_width: Some(0.7),
+        span: [0.0, 9.0],
+        bins: vec![bin; 2],
+        all: moments.clone(),
+        each: Vec::new(),
+    };
+    let setting = FieldSetting {
+        name: "small".into(),
+        wind_speed: 5.0,
+        turbulence_intensity: Some(0.02),
+        diameter: 0.58,
+        hub: [0.0; 3],
+    };
+    write_phase_averages(&path, &setting, &head, |_| moments.clone()).unwrap();
+    vec![("averages-line.nc", fs::read(path).unwrap())]
+}
+
+#[test]
+fn averages_by_phase() {
+    survives(averages(), |folder| {
+        StoredPhaseAverages::open(&folder.join("averages-line.nc"))?.averages()?;
         Ok(())
     });
 }

@@ -5,15 +5,21 @@
 //! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where
 //! it was taken. Beside it stand the turbines and the wind in which it was, [`PlaneSetting`].
 
+mod grid;
 mod growing;
 mod instants;
+mod phase_averages;
 mod read;
 mod scans;
 mod setting;
 mod statistics;
 mod stored_scans;
 
+pub(crate) use grid::{even, numbers_of};
 pub use instants::InstantWriter;
+pub use phase_averages::{
+    StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,
+};
 pub use read::{read_phases, read_plane, read_planes};
 pub use scans::{ScanInstant, ScanSetting, ScanWriter, scan_bytes};
 pub use setting::{PlacedTurbine, PlaneSetting};

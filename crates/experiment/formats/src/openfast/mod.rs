@@ -103,6 +103,7 @@ fn pitch_actuator(discon: &Deck, source: String) -> Result<PitchActuator, Turbin
         maximum_rate_deg_s: discon.number("PC_MaxRat")?.to_degrees(),
         minimum_pitch_deg: discon.number("PC_MinPit")?.to_degrees(),
         maximum_pitch_deg: discon.number("PC_MaxPit")?.to_degrees(),
+        swashplate: None,
     })
 }
 

@@ -4,6 +4,7 @@
 //! these files, planes included, so that a study can be reported anew from its folder alone.
 
 mod manifest;
+mod phase_averages;
 mod pitch_responses;
 mod planes;
 mod precursor;
@@ -17,6 +18,9 @@ mod sweep;
 
 pub use crate::clock::now;
 pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, write_manifest};
+pub use phase_averages::{
+    StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,
+};
 pub use pitch_responses::{
     PitchResponseRecord, add_pitch_responses, discard_unreadable_pitch_responses,
     read_pitch_responses, write_pitch_responses,
@@ -91,6 +95,7 @@ impl RunFolder {
         }
         self.remove_named(INFLOW, "")?;
         self.remove_named(SCANS, "")?;
+        self.remove_named(phase_averages::AVERAGES, "")?;
         self.remove_named("", OUTB)?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
@@ -228,6 +233,14 @@ impl RunFolder {
     /// Folder of the planes.
     pub fn planes_path(&self) -> PathBuf {
         self.path.join("planes")
+    }
+
+    /// The files of planes, by name.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn plane_files(&self) -> Result<Vec<PathBuf>, FileError> {
+        study::entries(&self.planes_path())
     }
 
     /// Folder of the volumes.

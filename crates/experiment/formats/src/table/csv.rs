@@ -23,7 +23,7 @@ pub(super) fn open(path: &Path) -> Result<(Head, TextRows), FileError> {
 ///
 /// # Errors
 /// [`FileError`].
-pub(super) fn columns(path: &Path) -> Result<(Vec<Column>, TextRows), FileError> {
+pub(crate) fn columns(path: &Path) -> Result<(Vec<Column>, TextRows), FileError> {
     let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
     let mut rows = TextRows::open(path)?;
     let (names, separator) = loop {

@@ -4,6 +4,7 @@ use super::controller::{self, controller_of, from_rpm};
 use super::document::{self, Document};
 use super::error::{Place, Step, TurbineFileError};
 use super::operation::operation_of;
+use super::swashplate::swashplate_of;
 use super::{TurbineFile, document as file, ranges};
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
@@ -20,6 +21,8 @@ type Checked<T> = Result<T, TurbineFileError>;
 
 /// Coefficients of a mode may miss one by this: printed to a few digits, they do not add up exactly (–).
 const SHAPE_TOLERANCE: f64 = 2e-3;
+/// Height of the hub may miss that of tower and shaft by this (m), on a model by a twentieth of its radius.
+const HUB_TOLERANCE: f64 = 0.5;
 /// First and last station may miss root and tip by this share of the blade (–).
 const END_TOLERANCE: f64 = 1e-4;
 
@@ -55,6 +58,7 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         nacelle: nacelle_of(nacelle),
         drive_train: drive_train_of(drive_train),
         pitch_actuator: actuator_of(actuator, place)?,
+        swashplate: plate_of(actuator, document.n_blades, place)?,
         operation: document.operation.as_ref().map(|o| operation_of(o, place)).transpose()?,
         rated_power: 1e3 * controller_group.rated_power_kw,
         rated_rotor_speed: from_rpm(controller_group.rated_rotor_speed_rpm),
@@ -73,6 +77,9 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         ("controller", &controller_group.source),
         ("airfoils", &airfoils.source),
     ];
+    sources.extend(
+        actuator.swashplate.as_ref().map(|plate| ("pitch_actuator.swashplate", &plate.source)),
+    );
     sources.extend(document.operation.as_ref().map(|group| ("operation", &group.source)));
     Ok(TurbineFile {
         title: document.title.clone(),
@@ -276,7 +283,7 @@ fn tower_of(tower: &file::Tower, rotor: &file::Rotor, place: &Place) -> Checked<
     // shows.
     let tilt = rotor.shaft_tilt_deg.to_radians();
     let hub_height = tower.top_height + tower.top_to_shaft + rotor.overhang * tilt.sin();
-    if (hub_height - rotor.hub_height).abs() > 0.5 {
+    if (hub_height - rotor.hub_height).abs() > HUB_TOLERANCE.min(0.05 * rotor.tip_radius) {
         let expected = format!("{hub_height:.2} m, from tower, shaft and overhang");
         let fix =
             "check hub_height, tower.top_height, tower.top_to_shaft, overhang and shaft_tilt_deg";
@@ -350,4 +357,14 @@ fn actuator_of(actuator: &file::PitchActuator, place: &Place) -> Checked<PitchAc
         minimum_pitch: low.to_radians(),
         maximum_pitch: high.to_radians(),
     })
+}
+
+fn plate_of(
+    actuator: &file::PitchActuator,
+    n_blades: usize,
+    place: &Place,
+) -> Checked<Option<turbine::actuators::Swashplate>> {
+    let limits = [actuator.minimum_pitch_deg, actuator.maximum_pitch_deg];
+    let plate = actuator.swashplate.as_ref();
+    plate.map(|plate| swashplate_of(plate, n_blades, limits, place)).transpose()
 }

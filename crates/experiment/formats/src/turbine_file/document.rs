@@ -1,6 +1,7 @@
 //! The file as it is written: one struct per group, units in the keys where they are not SI.
 
 use super::operation::Operation;
+use super::swashplate::Swashplate;
 use serde::{Deserialize, Serialize};
 
 /// A turbine file. Groups may be missing while a turbine is being put together; [`super::parse`] asks for
@@ -187,6 +188,9 @@ pub struct PitchActuator {
     pub minimum_pitch_deg: f64,
     /// Greatest pitch of the bearing (deg).
     pub maximum_pitch_deg: f64,
+    /// A swashplate that pitches all blades; each has an actuator of its own without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub swashplate: Option<Swashplate>,
 }
 
 /// Constants of torque and pitch control, low-speed side; gains act on measured minus reference rotor speed.

@@ -7,6 +7,7 @@ mod document;
 mod error;
 mod operation;
 mod ranges;
+mod swashplate;
 mod text;
 mod write;
 mod write_controller;
@@ -19,6 +20,7 @@ pub use document::{
 };
 pub use error::TurbineFileError;
 pub use operation::Operation;
+pub use swashplate::Swashplate;
 pub use write::{Written, write};
 
 use crate::atomic;

@@ -35,6 +35,7 @@ const SHAPE: Limits = from(-1e4, 1e4, "");
 const DAMPING_RATIO: Limits = from(0.0, 0.2, " damping ratio");
 const CORNER: Limits = above(0.0, 1e4, " rad/s");
 const ACTUATED: Limits = from(0.05, 5.0, "");
+const PLATE_LENGTH: Limits = above(0.0, 30.0, " m");
 const PITCH: Limits = from(-90.0, 180.0, "°");
 const TORQUE: Limits = from(0.0, 1e10, " N m");
 const GAIN: Limits = from(0.0, 1e12, "");
@@ -44,7 +45,8 @@ const ANGLE: Limits = from(-360.0, 360.0, "°");
 const AMPLITUDE: Limits = from(0.0, 90.0, "°");
 
 /// Key, as a path with `*` for any one key, and what its numbers may be: one for all of them, or one for each
-/// column of a row. The highest are some ten times those of the largest turbines built, or more.
+/// column of a row. The highest are some ten times those of the largest turbines built, or more;
+/// speeds and rates are those of models in wind tunnels.
 const RANGES: &[(&str, &[Limits])] = &[
     ("n_blades", &[from(0.0, 1e3, " blades")]),
     ("rotor.hub_radius", &[above(0.0, 30.0, " m")]),
@@ -104,14 +106,24 @@ const RANGES: &[(&str, &[Limits])] = &[
     ("drive_train.damping", &[from(0.0, 1e14, " N m s/rad")]),
     ("pitch_actuator.natural_frequency", &[above(0.0, 1e4, " rad/s")]),
     ("pitch_actuator.damping_ratio", &[ACTUATED]),
-    ("pitch_actuator.maximum_rate_deg_s", &[from(0.01, 100.0, "°/s")]),
+    ("pitch_actuator.maximum_rate_deg_s", &[from(0.01, 1e4, "°/s")]),
     ("pitch_actuator.minimum_pitch_deg", &[from(-90.0, 90.0, "°")]),
     ("pitch_actuator.maximum_pitch_deg", &[PITCH]),
+    ("pitch_actuator.swashplate.travel_per_turn", &[above(0.0, 10.0, " m a turn")]),
+    ("pitch_actuator.swashplate.crank_length", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.rod_radius", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.link_radius", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.horn_length", &[PLATE_LENGTH]),
+    ("pitch_actuator.swashplate.rod_azimuth_deg", &[ANGLE]),
+    ("pitch_actuator.swashplate.bias_deg", &[from(-10.0, 10.0, "°")]),
+    ("pitch_actuator.swashplate.slack_deg", &[from(0.0, 45.0, "°")]),
+    ("pitch_actuator.swashplate.gain_with_rotor", &[above(0.0, 5.0, "")]),
+    ("pitch_actuator.swashplate.gain_against_rotor", &[above(0.0, 5.0, "")]),
     ("operation.cut_in_wind_speed", &[from(0.0, 100.0, " m/s")]),
     ("operation.cut_out_wind_speed", &[above(0.0, 100.0, " m/s")]),
-    ("controller.rated_power_kw", &[from(1e-3, 1e5, " kW")]),
-    ("controller.rated_rotor_speed_rpm", &[from(0.1, 2000.0, " rpm")]),
-    ("controller.minimum_rotor_speed_rpm", &[from(0.0, 2000.0, " rpm")]),
+    ("controller.rated_power_kw", &[from(1e-5, 1e5, " kW")]),
+    ("controller.rated_rotor_speed_rpm", &[from(0.1, 1e4, " rpm")]),
+    ("controller.minimum_rotor_speed_rpm", &[from(0.0, 1e4, " rpm")]),
     ("controller.optimal_tip_speed_ratio", &[from(1.0, 20.0, "")]),
     ("controller.torque_gain", &[above(0.0, 1e14, " N m s²")]),
     ("controller.rated_torque", &[above(0.0, 1e10, " N m")]),
@@ -138,8 +150,8 @@ const RANGES: &[(&str, &[Limits])] = &[
     ("controller.tower_damping.gain", &[from(0.0, 1e4, " rad s/m")]),
     ("controller.tower_damping.high_pass_corner", &[CORNER]),
     ("controller.tower_damping.limit_deg", &[AMPLITUDE]),
-    ("controller.individual_pitch.proportional", &[from(0.0, 1.0, " rad/(N m)")]),
-    ("controller.individual_pitch.integral", &[from(0.0, 1.0, " rad/(N m s)")]),
+    ("controller.individual_pitch.proportional", &[from(0.0, 1e3, " rad/(N m)")]),
+    ("controller.individual_pitch.integral", &[from(0.0, 1e4, " rad/(N m s)")]),
     ("controller.individual_pitch.azimuth_offset_deg", &[ANGLE]),
     ("controller.individual_pitch.limit_deg", &[AMPLITUDE]),
     ("controller.individual_pitch.ramp", &[from(0.0, 1e3, " m/s")]),

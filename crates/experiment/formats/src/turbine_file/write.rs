@@ -5,6 +5,7 @@ use super::document::{
     Rotor, Tower, Unsteady,
 };
 use super::operation::Operation;
+use super::swashplate::Swashplate;
 use super::text::{Text, number, numbers, quoted};
 use super::write_controller::controller;
 
@@ -135,6 +136,31 @@ fn pitch_actuator(out: &mut Text, actuator: &PitchActuator) {
     out.number("maximum_rate_deg_s", actuator.maximum_rate_deg_s, "");
     out.number("minimum_pitch_deg", actuator.minimum_pitch_deg, "");
     out.number("maximum_pitch_deg", actuator.maximum_pitch_deg, "");
+    if let Some(plate) = &actuator.swashplate {
+        out.line("");
+        out.line("# Lag, rate and limits of its motors are those above, in collective pitch.");
+        out.line("[pitch_actuator.swashplate]");
+        swashplate(out, plate);
+    }
+}
+
+fn swashplate(out: &mut Text, plate: &Swashplate) {
+    out.text("source", &plate.source);
+    if let Some(travel) = plate.travel_per_turn {
+        out.number("travel_per_turn", travel, "of a rod, by a nut on a threaded shaft");
+    }
+    if let Some(length) = plate.crank_length {
+        out.number("crank_length", length, "arm that moves a rod");
+    }
+    out.number("rod_radius", plate.rod_radius, "shaft to rods");
+    out.number("link_radius", plate.link_radius, "shaft to pitch links");
+    out.number("horn_length", plate.horn_length, "pitch axis of a blade to its link");
+    out.number("rod_azimuth_deg", plate.rod_azimuth_deg, "of the first rod");
+    let bias = numbers(&plate.bias_deg).join(", ");
+    out.line(&format!("bias_deg = [{bias}]  # tilt and yaw pitch with the plate straight"));
+    out.number("slack_deg", plate.slack_deg, "play of the plate about the shaft, either way");
+    out.number("gain_with_rotor", plate.gain_with_rotor, "tilt of the plate over that of the rods");
+    out.number("gain_against_rotor", plate.gain_against_rotor, "its direction going round so");
 }
 
 /// The group that not every source tells of: a comment stands in its place then, and nothing is missing.

@@ -212,6 +212,7 @@ fn pitch_actuator(root: &Node, source: &str) -> Result<Option<PitchActuator>, Tu
         maximum_rate_deg_s: pitch.number("max_pitch_rate")?.to_degrees(),
         minimum_pitch_deg: pitch.number("min_pitch")?.to_degrees(),
         maximum_pitch_deg: pitch.number("max_pitch")?.to_degrees(),
+        swashplate: None,
     }))
 }
 

@@ -3,16 +3,23 @@
 //! An analysis reads the records of runs and answers in text and in JSON. The command line makes its
 //! arguments and its help from the descriptor; a program calls [`Analysis::run`] with a [`Request`].
 
+mod budget;
 mod changes;
+mod entrainment;
 mod gains;
 mod hub_vortex;
 mod lock;
 mod meandering;
+#[cfg(feature = "modes")]
+mod modes;
 mod moments;
 mod offsets;
+mod particles;
 mod phase;
+pub(crate) mod phases;
 mod spectra;
 mod tune;
+mod vortices;
 mod winds;
 
 use crate::PostprocessingError;
@@ -34,6 +41,13 @@ pub const ANALYSES: &[Analysis] = &[
     lock::ANALYSIS,
     meandering::ANALYSIS,
     hub_vortex::ANALYSIS,
+    phases::ANALYSIS,
+    entrainment::ANALYSIS,
+    budget::ANALYSIS,
+    vortices::ANALYSIS,
+    #[cfg(feature = "modes")]
+    modes::ANALYSIS,
+    particles::ANALYSIS,
 ];
 
 /// Where an analysis draws its figures.

@@ -6,11 +6,19 @@ use super::section::{Section, Stored};
 use super::slices::{self, SUM_BYTES, Slice};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
+use farm::Plan;
 use flow::fields::{FieldSource, PlaneAverage, PlaneAverageState};
 use formats::records::write_mean_plane;
 
-/// Planes are averaged from instants about this far apart (s).
-pub(super) const AVERAGING_INTERVAL: f64 = 2.0;
+/// Planes are averaged from instants about this far apart (s),
+const AVERAGING_INTERVAL: f64 = 2.0;
+/// those of models as far apart as a wind of this speed takes past the rotor (m/s).
+const PASSING_SPEED: f64 = 50.0;
+
+/// Distance of the instants that planes are averaged from (s).
+pub(super) fn averaging_interval(plan: &Plan) -> f64 {
+    AVERAGING_INTERVAL.min(plan.diameter / PASSING_SPEED)
+}
 
 /// The averages of all planes, of no instant yet.
 pub(crate) fn averages(setup: &Prepared, fields: &dyn FieldSource) -> Vec<PlaneAverage> {
@@ -20,7 +28,7 @@ pub(crate) fn averages(setup: &Prepared, fields: &dyn FieldSource) -> Vec<PlaneA
 
 /// The steps that they are made of.
 pub(crate) fn schedule(setup: &Prepared) -> Schedule {
-    Schedule::analysed(&setup.plan, AVERAGING_INTERVAL)
+    Schedule::analysed(&setup.plan, averaging_interval(&setup.plan))
 }
 
 pub(super) static KIND: OutputKind = OutputKind {

@@ -15,6 +15,7 @@ mod lines;
 pub(crate) mod mean_planes;
 pub(crate) mod outb;
 mod output;
+pub(crate) mod phase_averages;
 mod phase_planes;
 mod scans;
 mod schedule;
@@ -38,7 +39,7 @@ use farm::outputs::OUTPUTS;
 use std::sync::Once;
 
 /// The kinds of output that every study has; they finish in this order.
-pub static STANDARD: [&OutputKind; 11] = [
+pub static STANDARD: [&OutputKind; 12] = [
     &series::KIND,
     &mean_planes::KIND,
     &phase_planes::KIND,
@@ -49,6 +50,7 @@ pub static STANDARD: [&OutputKind; 11] = [
     &cores::KIND,
     &wind_records::KIND,
     &scans::KIND,
+    &phase_averages::KIND,
     // From the complete series.
     &outb::KIND,
 ];

@@ -1,6 +1,6 @@
 //! The plane at hub height averaged by the phase of the first helix: `planes/hub-height-phases.nc`.
 
-use super::mean_planes::AVERAGING_INTERVAL;
+use super::mean_planes::averaging_interval;
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
@@ -49,7 +49,7 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
         Some(stored) => stored.state()?,
         None => PhaseAverage::new(&slice.plane(fields), rate, n_phases),
     };
-    let schedule = Schedule::analysed(&scene.setup.plan, AVERAGING_INTERVAL);
+    let schedule = Schedule::analysed(&scene.setup.plan, averaging_interval(&scene.setup.plan));
     Ok(Some(Box::new(PhasePlanes { schedule, slice, average })))
 }
 

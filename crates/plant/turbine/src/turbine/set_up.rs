@@ -1,6 +1,7 @@
 //! What a turbine's parts are set up with.
 
 use super::settings::Induction;
+use super::{FARTHEST_STRUCTURAL_STEP, LONGEST_STRUCTURAL_STEP};
 use crate::definition::Definition;
 use crate::rotor::Frame;
 use crate::structure::DegreeOfFreedom;
@@ -26,6 +27,11 @@ pub(super) fn frame_at(position: Vector3, definition: &Definition) -> Frame {
     // The overhang runs along the shaft; the hub height is the apex's own.
     let apex = position + Vector3::new(-geometry.overhang * shaft.x, 0.0, geometry.hub_height);
     Frame::new(apex, geometry.shaft_tilt)
+}
+
+/// Longest step of the structure of `definition` (s).
+pub(super) fn longest_step(definition: &Definition) -> f64 {
+    LONGEST_STRUCTURAL_STEP.min(FARTHEST_STRUCTURAL_STEP / definition.rated_rotor_speed)
 }
 
 /// What does not move where only the rotor turns.

@@ -2,7 +2,7 @@
 
 use super::aerodynamics::AerodynamicState;
 use super::nacelle::NacelleState;
-use crate::actuators::PitchState;
+use crate::actuators::{PitchState, SwashplateState};
 use crate::structure::StructureState;
 use basis::PerBlade;
 use serde::{Deserialize, Serialize};
@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct TurbineState {
     pub(super) structure: StructureState,
     pub(super) pitch: PerBlade<PitchState>,
+    pub(super) swashplate: Option<SwashplateState>,
     pub(super) nacelle: NacelleState,
     pub(super) aerodynamics: AerodynamicState,
     pub(super) readings: Readings,
@@ -30,12 +31,18 @@ pub(super) struct Readings {
 
 impl TurbineState {
     /// Of a turbine that has not run yet, its blades and its nacelle at rest as `structure` has them.
-    pub(super) fn at_start(structure: StructureState, aerodynamics: AerodynamicState) -> Self {
+    /// A `swashplate` stands as the blades do.
+    pub(super) fn at_start(
+        structure: StructureState,
+        aerodynamics: AerodynamicState,
+        swashplate: Option<SwashplateState>,
+    ) -> Self {
         let pitch = structure.pitch.map(|blade| PitchState { pitch: blade.angle, rate: 0.0 });
         let nacelle = NacelleState { angle: structure.yaw.angle, rate: 0.0 };
         Self {
             structure,
             pitch,
+            swashplate,
             nacelle,
             aerodynamics,
             readings: Readings::default(),

@@ -8,6 +8,7 @@ use crate::definition::{
     TowerSection,
 };
 use crate::sample;
+use basis::PerBlade;
 use std::f64::consts::PI;
 
 pub(super) const DENSITY: f64 = 1.2;

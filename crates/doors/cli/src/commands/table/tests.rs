@@ -137,3 +137,18 @@ fn the_widest_line_of_a_large_study_fits() {
     assert_eq!(text.matches("180.5 ± 196.3").count(), 48, "{text}");
     assert_eq!(text.matches("3.99° 0.1184 Hz").count(), 24, "{text}");
 }
+
+#[test]
+fn models_are_shown_in_watts_and_newtons() {
+    let small = |power: f64| TurbineSummary {
+        power: statistic(power),
+        thrust: statistic(2.9),
+        ..examples::turbine("T1", 1e7)
+    };
+    let text = render(&[summary(vec![small(5.4321)])], 200);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(cells(lines[1])[2..6], ["power", "W", "thrust", "N"], "{text}");
+    assert!(lines[2].contains("5.432") && lines[2].contains("2.900"), "{text}");
+    let text = render(&[summary(vec![small(5.4321), turbine("T2", &[])])], 200);
+    assert!(text.contains("power kW"), "{text}");
+}

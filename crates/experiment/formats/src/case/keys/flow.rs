@@ -12,7 +12,7 @@ pub(in crate::case) static COMMON: [Key; 2] = [
         "step",
         from(1e-4, 10.0),
         "s",
-        Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind"),
+        Otherwise("chosen from tip speed and wind speed; 0.02 s in prescribed wind, less for rotors that turn faster than 24 times a minute"),
         "Time step of the flow, which is the control interval too.",
     )
     .mistaken(&[Slip { unit: "ms", factor: 0.001 }]),

@@ -26,6 +26,8 @@ const SIGNED: &[(&str, &[usize])] = &[
     ("nacelle.center_of_mass", &[0, 1, 2]),
     ("pitch_actuator.minimum_pitch_deg", &[0]),
     ("pitch_actuator.maximum_pitch_deg", &[0]),
+    ("pitch_actuator.swashplate.rod_azimuth_deg", &[0]),
+    ("pitch_actuator.swashplate.bias_deg", &[0, 1]),
     ("controller.fine_pitch_deg", &[0]),
     ("controller.maximum_pitch_deg", &[0]),
     ("controller.minimum_pitch", &[1]),
@@ -91,8 +93,11 @@ fn thinned(name: &str) -> String {
     write(&document).text
 }
 
-/// Leaves the first, the middle and the last of `rows`.
+/// Leaves the first, the middle and the last of `rows`, and a table of few as it is.
 fn thin<T: Clone>(rows: &mut Vec<T>) {
+    if rows.len() < 4 {
+        return;
+    }
     let last = rows.len() - 1;
     *rows = [0, last / 2, last].map(|row| rows[row].clone()).to_vec();
 }

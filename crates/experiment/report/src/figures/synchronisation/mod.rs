@@ -12,6 +12,7 @@ mod marks;
 mod offsets;
 mod slices;
 mod spectra;
+mod surfaces;
 mod tracks;
 
 use crate::draw::Figure;
@@ -19,6 +20,7 @@ use basis::records::{Plane, Statistic};
 pub use curves::{CurveAt, CurveFigure, CurvePanel};
 pub use discs::{DiscFigure, DiscPanel, DiscPath, DiscPoint};
 pub use maps::{MapFigure, MapPanel};
+pub use surfaces::{SurfaceFigure, SurfacePanel};
 
 /// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -269,6 +271,8 @@ pub struct Signals {
     pub discs: Vec<DiscFigure>,
     /// Quantities over two others.
     pub maps: Vec<MapFigure>,
+    /// Surfaces in space.
+    pub surfaces: Vec<SurfaceFigure>,
     /// Quantities over one other.
     pub curves: Vec<CurveFigure>,
     /// Signals over time.
@@ -369,8 +373,9 @@ pub(crate) fn of_signals(signals: &Signals) -> Vec<Figure> {
     let densities = signals.densities.iter().filter_map(densities::densities);
     let discs = signals.discs.iter().filter_map(discs::discs);
     let maps = signals.maps.iter().filter_map(maps::maps);
+    let surfaces = signals.surfaces.iter().filter_map(surfaces::surfaces);
     let curves = signals.curves.iter().filter_map(curves::curves);
-    let discs = discs.chain(maps).chain(curves);
+    let discs = discs.chain(maps).chain(surfaces).chain(curves);
     discs.chain(signals.tracks.iter().filter_map(tracks::tracks)).chain(densities).collect()
 }
 

@@ -175,6 +175,7 @@ pub(super) fn plain() -> Definition {
             minimum_pitch: -0.05,
             maximum_pitch: 1.5,
         },
+        swashplate: None,
         operation: None,
         rated_power: 2e6,
         rated_rotor_speed: 1.7,

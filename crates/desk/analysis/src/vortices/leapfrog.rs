@@ -1,0 +1,150 @@
+//! Where one vortex passes the one before it.
+
+use super::Track;
+use std::f64::consts::TAU;
+
+/// The blades that vortices come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blades {
+    /// Blades (–).
+    pub n: usize,
+    /// Steps of a revolution (–).
+    pub per_revolution: usize,
+    /// Place along the first axis by which it is told when a vortex came (m).
+    pub line: f64,
+}
+
+/// Which vortices are taken together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pairs {
+    /// Each with the one that came next.
+    All,
+    /// That of one blade with that of the next one.
+    Of {
+        /// All blades.
+        blades: Blades,
+        /// The blade whose vortex is the first of a pair, from 0, in the order in which vortices come after
+        /// the first step (–).
+        first: usize,
+    },
+}
+
+/// A vortex that passes another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leapfrog {
+    /// The one that is passed, and the one that came after it and passes: numbers of tracks.
+    pub ids: [usize; 2],
+    /// Where along the first axis (m).
+    pub place: f64,
+    /// When, in steps since the first frame (–), between frames too.
+    pub step: f64,
+}
+
+/// Where of each pair of `tracks` that were born in the plane, one after the other and of one sign, the
+/// second first gets as far along the first axis as the first: when the pair has turned by 90°.
+///
+/// Linear between frames. Source: van der Hoek et al. (2024), §3.4, after Lignarolo et al. (2015), J. Fluid
+/// Mech. 781.
+pub fn leapfrogs(tracks: &[Track], pairs: Pairs) -> Vec<Leapfrog> {
+    let mut found = Vec::new();
+    for born in born(tracks) {
+        let numbers = match pairs {
+            Pairs::All => vec![None; born.len()],
+            Pairs::Of { blades, .. } => numbers(&born, &blades),
+        };
+        for (pair, number) in born.windows(2).zip(numbers.windows(2)) {
+            let counts = match (pairs, number) {
+                (Pairs::All, _) => true,
+                (Pairs::Of { blades, first }, [Some(a), Some(b)]) => {
+                    // A vortex that was missed breaks the pair.
+                    blades.of(*a) == first && *b == a + 1
+                }
+                _ => false,
+            };
+            if counts {
+                found.extend(passing(pair[0], pair[1]));
+            }
+        }
+    }
+    found
+}
+
+/// The blade, from 0, that each of the `tracks` comes from which were born in the plane: number of the track,
+/// and the blade in the order in which vortices come after the first step.
+pub fn blades_of(tracks: &[Track], blades: &Blades) -> Vec<(usize, usize)> {
+    let of_sign = |born: Vec<&Track>| {
+        let numbers = numbers(&born, blades);
+        let pairs = born.iter().map(|track| track.id).zip(numbers);
+        pairs.filter_map(|(id, number)| Some((id, blades.of(number?)))).collect::<Vec<_>>()
+    };
+    born(tracks).into_iter().flat_map(of_sign).collect()
+}
+
+/// The tracks that were born in the plane, of either sign, in the order in which they came.
+fn born(tracks: &[Track]) -> [Vec<&Track>; 2] {
+    [1.0, -1.0].map(|sign| {
+        let is_one =
+            |track: &&Track| track.is_born && track.sightings[0].vortex.circulation * sign > 0.0;
+        let mut born: Vec<&Track> = tracks.iter().filter(is_one).collect();
+        born.sort_by_key(|track| (track.sightings[0].step, track.id));
+        born
+    })
+}
+
+impl Blades {
+    /// The blade of vortex `number`.
+    fn of(&self, number: i64) -> usize {
+        number.rem_euclid(self.n.max(1) as i64) as usize
+    }
+}
+
+/// Number of each of the tracks that were `born` in the order in which blades pass, whether all were seen or
+/// not; none of one that was seen once.
+///
+/// Blades pass at even intervals, after a time that the mean over all of them tells.
+fn numbers(born: &[&Track], blades: &Blades) -> Vec<Option<i64>> {
+    let period = blades.per_revolution as f64 / blades.n.max(1) as f64;
+    let came: Vec<Option<f64>> = born.iter().map(|track| came_at(track, blades.line)).collect();
+    let angles = came.iter().flatten().map(|step| TAU * step / period);
+    let (sine, cosine) =
+        angles.fold((0.0, 0.0), |(s, c), angle| (s + angle.sin(), c + angle.cos()));
+    let offset = f64::atan2(sine, cosine).rem_euclid(TAU) / TAU;
+    let number = |step: f64| (step / period - offset).round() as i64;
+    came.into_iter().map(|step| step.map(number)).collect()
+}
+
+/// The step at which `track` is at `line` along the first axis (m), straight through its first two sightings.
+fn came_at(track: &Track, line: f64) -> Option<f64> {
+    let [a, b] = track.sightings.first_chunk::<2>()?;
+    let [x, y] = [a, b].map(|one| one.vortex.position[0]);
+    let steps = (b.step - a.step) as f64;
+    let step = a.step as f64 + steps * (line - x) / (y - x);
+    step.is_finite().then_some(step)
+}
+
+/// Where `second` passes `first`.
+fn passing(first: &Track, second: &Track) -> Option<Leapfrog> {
+    let start = second.sightings[0].step;
+    let end = second.sightings[second.sightings.len() - 1].step;
+    let ahead = |step: usize| {
+        let own = first.first_axis_at(step)?;
+        Some((own, second.first_axis_at(step)? - own))
+    };
+    let (mut before, mut ahead_before) = ahead(start)?;
+    if ahead_before >= 0.0 {
+        return None;
+    }
+    for step in start + 1..=end {
+        let (now, ahead_now) = ahead(step)?;
+        if ahead_now >= 0.0 {
+            let share = ahead_before / (ahead_before - ahead_now);
+            return Some(Leapfrog {
+                ids: [first.id, second.id],
+                place: before + share * (now - before),
+                step: (step - 1) as f64 + share,
+            });
+        }
+        (before, ahead_before) = (now, ahead_now);
+    }
+    None
+}

@@ -1,0 +1,132 @@
+//! Tracks, leapfrogging and its sine against motions that are given.
+
+use super::*;
+use std::f64::consts::TAU;
+
+fn vortex(x: f64, y: f64) -> Vortex {
+    Vortex { position: [x, y], circulation: -1.0, core_radius: 0.1, drift: [1.0, 0.0], misfit: 0.0 }
+}
+
+/// Vortices born every `period` steps at x = 0, going at unit speed, each pair turning about its middle: the
+/// second passes the first at `place`.
+fn pairs(n_frames: usize, period: usize, place: impl Fn(usize) -> f64) -> Vec<Vec<Vortex>> {
+    let speed = 0.05;
+    let gap = speed * period as f64;
+    let mut frames = vec![Vec::new(); n_frames];
+    for pair in 0..n_frames.div_ceil(2 * period) {
+        let (births, radius) = ([2 * pair * period, (2 * pair + 1) * period], 0.5 * gap);
+        // Both go on at one speed, turning about their middle by a quarter until `place`.
+        for step in births[1]..n_frames.min(births[1] + 80) {
+            let middle = speed * (step - births[1]) as f64 + radius;
+            let share = (middle - radius) / (place(pair) - radius);
+            let (sine, cosine) = (share * TAU / 4.0).sin_cos();
+            frames[step].push(vortex(middle + radius * cosine, 1.0 - radius * sine));
+            frames[step].push(vortex(middle - radius * cosine, 1.0 + radius * sine));
+        }
+        for step in births[0]..births[1].min(n_frames) {
+            frames[step].push(vortex(speed * (step - births[0]) as f64, 1.0));
+        }
+    }
+    frames
+}
+
+#[test]
+fn each_pair_leapfrogs_where_it_does() {
+    let place = |pair: usize| 1.5 + 0.1 * pair as f64;
+    let frames = pairs(200, 10, place);
+    let tracking =
+        Tracking { interval: 0.05, gate: 0.06, n_rounds: 1, birth: 0.06, most_missed: 1 };
+    let tracks = follow(&frames, &tracking);
+    let born: Vec<&Track> = tracks.iter().filter(|track| track.is_born).collect();
+    assert_eq!(born.len(), 20);
+    // Vortices pass this line 3 steps after the first one, so that none stands at the edge of the count.
+    let blades = Blades { n: 2, per_revolution: 20, line: 0.15 };
+    let pairs = |first| Pairs::Of { blades, first };
+    let found = leapfrogs(&tracks, pairs(0));
+    assert!(found.len() >= 7, "{}", found.len());
+    for (pair, leapfrog) in found.iter().enumerate() {
+        assert!((leapfrog.place - place(pair)).abs() < 2e-3, "{leapfrog:?}");
+        assert_eq!(leapfrog.ids[1], leapfrog.ids[0] + 1);
+    }
+    // The second of a pair never passes the first of the next one.
+    assert!(leapfrogs(&tracks, pairs(1)).is_empty());
+    let of_blades = blades_of(&tracks, &blades);
+    assert!(of_blades.iter().all(|(id, blade)| id % 2 == *blade), "{of_blades:?}");
+    // Without one vortex its pair is gone, and all others are found as before.
+    let mut fewer = tracks.clone();
+    fewer.retain(|track| track.id != found[2].ids[1]);
+    let left = leapfrogs(&fewer, pairs(0));
+    let others = found.iter().enumerate().filter(|(pair, _)| *pair != 2).map(|(_, one)| *one);
+    assert_eq!(left, others.collect::<Vec<_>>());
+}
+
+/// A vortex that is missing from a frame keeps its number; one beyond the gate does not.
+#[test]
+fn a_missing_frame_is_bridged_and_a_jump_is_not() {
+    let mut frames: Vec<Vec<Vortex>> =
+        (0..20).map(|step| vec![vortex(0.05 * f64::from(step), 0.0)]).collect();
+    frames[7].clear();
+    let tracking = Tracking { interval: 0.05, gate: 0.02, n_rounds: 1, birth: 0.0, most_missed: 1 };
+    let tracks = follow(&frames, &tracking);
+    assert_eq!((tracks.len(), tracks[0].sightings.len()), (1, 19));
+    assert!(tracks[0].first_axis_at(7).is_some_and(|x| (x - 0.35).abs() < 1e-12));
+    for vortices in &mut frames[12..] {
+        vortices[0].position[0] += 0.5;
+    }
+    assert_eq!(follow(&frames, &tracking).len(), 2);
+}
+
+/// In a cycle a vortex is followed beyond the last frame into the first.
+#[test]
+fn a_cycle_has_no_end() {
+    // One is born each turn of 10 frames, and lives for 18.
+    let frame = |step: usize| {
+        let ages = [step, step + 10];
+        ages.iter().filter(|age| **age < 18).map(|age| vortex(0.05 * *age as f64, 0.0)).collect()
+    };
+    let frames: Vec<Vec<Vortex>> = (0..10).map(frame).collect();
+    let tracking =
+        Tracking { interval: 0.05, gate: 0.02, n_rounds: 2, birth: 0.01, most_missed: 0 };
+    let tracks = follow(&frames, &tracking);
+    let longest = tracks.iter().filter(|track| track.is_born).map(|track| track.sightings.len());
+    assert_eq!(longest.max(), Some(18));
+}
+
+#[test]
+fn a_sine_comes_back_with_an_interval_that_holds_it() {
+    let angles: Vec<f64> = (0..24).map(|i| TAU * f64::from(i) / 24.0).collect();
+    let exact: Vec<f64> = angles.iter().map(|a| 1.6 + 0.3 * (a + 0.7).sin()).collect();
+    let found = sine_fit(&angles, &exact).unwrap();
+    assert!((found.mean - 1.6).abs() < 1e-12 && (found.amplitude - 0.3).abs() < 1e-12);
+    assert!((found.phase - 0.7).abs() < 1e-12 && found.half_widths[0] < 1e-12);
+    // What is left has a standard deviation of 0.05 √(24/21): the interval is t s √(1/24).
+    let noisy: Vec<f64> =
+        exact.iter().enumerate().map(|(i, v)| v + if i % 2 == 0 { 0.05 } else { -0.05 }).collect();
+    let found = sine_fit(&angles, &noisy).unwrap();
+    let expected = 2.0796 * 0.05 * (24.0_f64 / 21.0).sqrt() / 24.0_f64.sqrt();
+    assert!((found.half_widths[0] / expected - 1.0).abs() < 1e-3);
+    assert!((found.half_widths[1] / (expected * 2.0_f64.sqrt()) - 1.0).abs() < 1e-3);
+    assert!(sine_fit(&angles[..3], &exact[..3]).is_err());
+    assert!(sine_fit(&[0.0; 6], &[1.0; 6]).is_err());
+}
+
+#[test]
+fn a_cubic_comes_back_with_an_interval_that_holds_it() {
+    let places: Vec<f64> = (0..40).map(|i| 0.5 + 0.07 * f64::from(i)).collect();
+    let cubic = |x: f64| 9.0 - 4.0 * x + 0.8 * x * x - 0.05 * x.powi(3);
+    let exact: Vec<f64> = places.iter().map(|x| cubic(*x)).collect();
+    let found = cubic_fit(&places, &exact).unwrap();
+    for x in [0.5, 1.3, 3.2] {
+        let (value, half_width) = found.at(x);
+        assert!((value - cubic(x)).abs() < 1e-10 && half_width < 1e-9, "{value} {half_width}");
+    }
+    let noisy: Vec<f64> =
+        exact.iter().enumerate().map(|(i, v)| v + if i % 2 == 0 { 0.1 } else { -0.1 }).collect();
+    let found = cubic_fit(&places, &noisy).unwrap();
+    // The mean of what four of 40 numbers take: t s √(4/40).
+    let mean = places.iter().map(|x| found.at(*x).1.powi(2)).sum::<f64>() / 40.0;
+    let expected = 2.0281 * 0.1 * (40.0_f64 / 36.0).sqrt() * (4.0_f64 / 40.0).sqrt();
+    assert!((mean.sqrt() / expected - 1.0).abs() < 0.01, "{} {expected}", mean.sqrt());
+    assert!(cubic_fit(&places[..4], &exact[..4]).is_err());
+    assert!(cubic_fit(&[1.0; 8], &[2.0; 8]).is_err());
+}

@@ -1,0 +1,160 @@
+//! What was found of vortices in words and in numbers.
+
+use super::Found;
+use crate::analyses::phases::setting_json;
+use crate::wake_fields::conditions;
+use analysis::vortices::{Track, Vortex};
+use report::text_table::{Column, TextTable};
+use serde_json::json;
+
+/// Means over the sightings of a track: circulation over UD, core over D.
+fn means(track: &Track, found: &Found) -> [f64; 2] {
+    let setting = &found.averaged.setting;
+    let n = track.sightings.len() as f64;
+    let mean =
+        |of: fn(&Vortex) -> f64| track.sightings.iter().map(|s| of(&s.vortex)).sum::<f64>() / n;
+    [
+        mean(|vortex| vortex.circulation) / (setting.wind_speed * setting.diameter),
+        mean(|vortex| vortex.core_radius) / setting.diameter,
+    ]
+}
+
+/// Tracks that are worth a line: seen in three frames at least, the longest first.
+fn worth(found: &Found) -> Vec<&Track> {
+    let mut tracks: Vec<&Track> =
+        found.tracks.iter().filter(|track| track.sightings.len() > 2).collect();
+    tracks.sort_by_key(|track| (std::cmp::Reverse(track.sightings.len()), track.id));
+    tracks
+}
+
+pub(super) fn text(found: &Found, width: usize) -> String {
+    let setting = &found.averaged.setting;
+    let over = |x: f64| (x - setting.hub[0]) / setting.diameter;
+    let mut text = format!("{}\n{}\n", conditions(setting), found.averaged.samples());
+    let n_vortices: usize = found.frames.iter().map(Vec::len).sum();
+    text += &format!(
+        "{n_vortices} vortices of {:.1} U/D at least in {} bins\n",
+        found.least * setting.diameter / setting.wind_speed,
+        found.frames.len()
+    );
+    let headings = ["from x/D", "to x/D", "bins", "circulation UD", "core D"].map(Column::number);
+    let mut table = TextTable::new([Column::number("track")], headings);
+    for track in worth(found).into_iter().take(16) {
+        let [circulation, core] = means(track, found);
+        let ends = [0, track.sightings.len() - 1].map(|i| track.sightings[i].vortex.position[0]);
+        table.row([
+            track.id.to_string(),
+            format!("{:.3}", over(ends[0])),
+            format!("{:.3}", over(ends[1])),
+            track.sightings.len().to_string(),
+            format!("{circulation:.4}"),
+            format!("{core:.4}"),
+        ]);
+    }
+    if !found.tracks.is_empty() {
+        text += &table.fitted(width);
+    }
+    if !found.is_along() {
+        text += &hub_text(found);
+    }
+    if !found.leapfrogs.is_empty() {
+        let n = found.leapfrogs.len() as f64;
+        let places = || found.leapfrogs.iter().map(|(_, one)| over(one.place));
+        let mean = places().sum::<f64>() / n;
+        let deviation = (places().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        text += &format!("{n} leapfrogs, at {mean:.3} ± {deviation:.3} D (standard deviation)\n");
+    }
+    if let Some(fit) = &found.fit {
+        let [mean, amplitude, phase] = fit.half_widths;
+        text += &format!(
+            "over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %\n",
+            fit.mean / setting.diameter,
+            mean / setting.diameter,
+            fit.amplitude / setting.diameter,
+            amplitude / setting.diameter,
+            fit.phase.to_degrees(),
+            phase.to_degrees()
+        );
+    }
+    text + "leapfrog: where a vortex first gets as far downwind as the one before it; core: radius of the greatest speed\n"
+}
+
+/// The hub vortex of each bin: the strongest within a quarter of a diameter of the hub.
+fn hub_vortices(found: &Found) -> Vec<Option<Vortex>> {
+    let setting = &found.averaged.setting;
+    let nearest = |frame: &Vec<Vortex>| {
+        let near = frame.iter().filter(|vortex| {
+            let [y, z] = vortex.position;
+            (y - setting.hub[1]).hypot(z - setting.hub[2]) < 0.25 * setting.diameter
+        });
+        near.max_by(|a, b| a.circulation.abs().total_cmp(&b.circulation.abs())).copied()
+    };
+    found.frames.iter().map(nearest).collect()
+}
+
+fn hub_text(found: &Found) -> String {
+    let setting = &found.averaged.setting;
+    let seen: Vec<Vortex> = hub_vortices(found).into_iter().flatten().collect();
+    if seen.is_empty() {
+        return "no hub vortex within 0.25 D of the hub\n".to_owned();
+    }
+    let n = seen.len() as f64;
+    let mean = |of: &dyn Fn(&Vortex) -> f64| seen.iter().map(of).sum::<f64>() / n;
+    let [y, z] = [0, 1].map(|axis| mean(&|vortex| vortex.position[axis]));
+    let orbit = mean(&|v| (v.position[0] - y).powi(2) + (v.position[1] - z).powi(2)).sqrt();
+    format!(
+        "hub vortex in {} of {} bins: {:.3} D left and {:.3} D above the hub, {:.3} D about that (root mean square), circulation {:.4} UD\n",
+        seen.len(),
+        found.frames.len(),
+        (y - setting.hub[1]) / setting.diameter,
+        (z - setting.hub[2]) / setting.diameter,
+        orbit / setting.diameter,
+        mean(&|vortex| vortex.circulation) / (setting.wind_speed * setting.diameter)
+    )
+}
+
+pub(super) fn json(found: &Found) -> serde_json::Value {
+    let vortex = |vortex: &Vortex| {
+        json!({
+            "position_m": vortex.position,
+            "circulation_m2_s": vortex.circulation,
+            "core_radius_m": vortex.core_radius,
+            "misfit": vortex.misfit,
+        })
+    };
+    let tracks = found.tracks.iter().filter(|track| track.sightings.len() > 2).map(|track| {
+        let sightings = track.sightings.iter().map(|one| {
+            json!({ "bin": one.step % found.frames.len(), "step": one.step, "vortex": vortex(&one.vortex) })
+        });
+        let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
+        json!({ "id": track.id, "born": track.is_born, "blade": blade, "sightings": sightings.collect::<Vec<_>>() })
+    });
+    let leapfrogs = found.leapfrogs.iter().map(|(azimuth, one)| {
+        json!({
+            "tracks": one.ids,
+            "x_m": one.place,
+            "step": one.step,
+            "helix_azimuth_deg": azimuth.map(f64::to_degrees),
+        })
+    });
+    let fit = found.fit.map(|fit| {
+        json!({
+            "mean_m": fit.mean,
+            "amplitude_m": fit.amplitude,
+            "phase_deg": fit.phase.to_degrees(),
+            "half_widths_95": [fit.half_widths[0], fit.half_widths[1], fit.half_widths[2].to_degrees()],
+            "n": fit.n,
+        })
+    });
+    let hub = if found.is_along() { Vec::new() } else { hub_vortices(found) };
+    json!({
+        "setting": setting_json(&found.averaged),
+        "samples": found.averaged.samples(),
+        "least_vorticity_1_s": found.least,
+        "peaks_without_a_vortex": found.n_lost,
+        "tracks": tracks.collect::<Vec<_>>(),
+        "leapfrogs": leapfrogs.collect::<Vec<_>>(),
+        "leapfrog_sine": fit,
+        "hub_vortex": hub.iter().map(|one| one.as_ref().map(vortex)).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,128 @@
+//! Figures of vortices: where they are phase by phase, and where they leapfrog.
+
+use super::Found;
+use crate::PostprocessingError;
+use crate::wake_fields::{axes, conditions, panel};
+use analysis::vortices::{Leapfrog, SineFit, Track, Vortex, cubic_fit};
+use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, Signals};
+
+/// The figures of what was `found`.
+pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
+    let (averaged, setting) = (&found.averaged, &found.averaged.setting);
+    let n = found.frames.len();
+    let spanned = found.cut.grid.spanned();
+    let mut panels = Vec::new();
+    for index in (0..n).step_by(n.div_ceil(3).max(1)) {
+        let scale = setting.diameter / setting.wind_speed;
+        let vorticity: Vec<f64> =
+            found.section(index)?.vorticity().iter().map(|value| value * scale).collect();
+        let title = averaged.name_of_bin(index);
+        let Some(mut panel) = panel(&found.cut.grid, setting, title, &vorticity) else { continue };
+        let place = |vortex: &Vortex| {
+            [0, 1].map(|a| (vortex.position[a] - setting.hub[spanned[a]]) / setting.diameter)
+        };
+        panel.points = found.frames[index].iter().map(place).collect();
+        panels.push(panel);
+    }
+    let map = MapFigure {
+        has_lines: false,
+        name: "vortices-by-phase".to_owned(),
+        title: "Vortices by phase".to_owned(),
+        caption: format!(
+            "Vorticity across the plane, times D/U; marked: vortices that were fitted. {}; {}.",
+            conditions(setting),
+            averaged.samples()
+        ),
+        along: axes(&found.cut.grid),
+        unit: "U/D".to_owned(),
+        panels,
+    };
+    let leapfrogs = found.fit.map(|fit| leapfrog_figure(found, &fit));
+    let curves = leapfrogs.into_iter().chain(strength_figure(found)).collect();
+    Ok(Signals { title: "Vortices".to_owned(), maps: vec![map], curves, ..Signals::default() })
+}
+
+/// Places of leapfrogs over the azimuth of the helix, and the sine through them.
+fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
+    let setting = &found.averaged.setting;
+    let at = |degrees: u32| {
+        let mean = fit.mean + fit.amplitude * (f64::from(degrees).to_radians() + fit.phase).sin();
+        let half = fit.half_widths[0].hypot(fit.half_widths[1]);
+        CurveAt {
+            at: f64::from(degrees),
+            mean: mean / setting.diameter,
+            band_95: [(mean - half) / setting.diameter, (mean + half) / setting.diameter],
+        }
+    };
+    let point = |(azimuth, one): &(Option<f64>, Leapfrog)| {
+        Some([(*azimuth)?.to_degrees(), (one.place - setting.hub[0]) / setting.diameter])
+    };
+    CurveFigure {
+        name: "leapfrogging-over-helix-azimuth".to_owned(),
+        title: "Where vortices leapfrog".to_owned(),
+        caption: format!(
+            "The sine through {} leapfrogs with its interval of 95 %. {}; {}.",
+            fit.n,
+            conditions(setting),
+            found.averaged.samples()
+        ),
+        along: "helix azimuth (deg)".to_owned(),
+        label: "x/D".to_owned(),
+        panels: vec![CurvePanel {
+            title: String::new(),
+            points: found.leapfrogs.iter().filter_map(point).collect(),
+            curve: (0..=360).step_by(5).map(at).collect(),
+            mark: None,
+        }],
+    }
+}
+
+/// Vorticity in the middle of vortices over the distance, blade by blade where they are told, with a cubic
+/// through it; none where too few were followed.
+fn strength_figure(found: &Found) -> Option<CurveFigure> {
+    let setting = &found.averaged.setting;
+    let n_blades = found.blades.iter().map(|(_, blade)| blade + 1).max();
+    let panel = |blade: Option<usize>| {
+        let is_one = |track: &&Track| match blade {
+            Some(blade) => found.blades.contains(&(track.id, blade)),
+            None => track.is_born,
+        };
+        let sightings = found.tracks.iter().filter(is_one).flat_map(|track| &track.sightings);
+        let points: Vec<[f64; 2]> = sightings
+            .map(|one| {
+                let place = (one.vortex.position[0] - setting.hub[0]) / setting.diameter;
+                let peak = one.vortex.peak_vorticity().abs();
+                [place, peak * setting.diameter / setting.wind_speed]
+            })
+            .collect();
+        let (places, values): (Vec<f64>, Vec<f64>) = points.iter().map(|[x, y]| (*x, *y)).unzip();
+        let fit = cubic_fit(&places, &values).ok()?;
+        let [low, high] = places
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
+        let at = |step: u32| {
+            let at = low + (high - low) * f64::from(step) / 60.0;
+            let (mean, half) = fit.at(at);
+            CurveAt { at, mean, band_95: [mean - half, mean + half] }
+        };
+        let title = blade.map_or(String::new(), |blade| format!("blade {} in turn", blade + 1));
+        let curve = (0..=60).map(at).collect();
+        Some(CurvePanel { title, points, curve, mark: None })
+    };
+    let panels: Vec<CurvePanel> = match n_blades {
+        Some(n) => (0..n).filter_map(|blade| panel(Some(blade))).collect(),
+        None => panel(None).into_iter().collect(),
+    };
+    (!panels.is_empty()).then(|| CurveFigure {
+        name: "vortices-strength-over-distance".to_owned(),
+        title: "How strong vortices are".to_owned(),
+        caption: format!(
+            "Vorticity in the middle of each vortex, bin by bin, and a cubic with its interval of 95 %. {}; {}.",
+            conditions(setting),
+            found.averaged.samples()
+        ),
+        along: "x/D".to_owned(),
+        label: "vorticity (U/D)".to_owned(),
+        panels,
+    })
+}

@@ -1,0 +1,23 @@
+//! Validations beside the wind tunnel.
+
+use crate::{Cost, Validation, tunnel};
+
+pub(super) const TURBINE: Validation = Validation {
+    name: "tunnel-turbine",
+    about: "the tunnel turbine alone: power at its best tip-speed ratio, amplitudes that its swashplate delivers, beside a published experiment",
+    cost: Cost::UnderAMinute,
+    run: tunnel::tunnel_turbine,
+    pictures: None,
+    page: "tunnel-helix",
+    recorded: include_str!("../../recorded/tunnel-turbine.toml"),
+};
+
+pub(super) const HELIX: Validation = Validation {
+    name: "tunnel-helix",
+    about: "two tunnel turbines at 5 D: what a helix of either sense costs and gives, beside a published experiment",
+    cost: Cost::Minutes(8),
+    run: tunnel::tunnel_helix,
+    pictures: None,
+    page: "tunnel-helix",
+    recorded: include_str!("../../recorded/tunnel-helix.toml"),
+};
