@@ -118,7 +118,6 @@ rated_torque = gain * rated_speed**2
 inertia = 3 * np.trapezoid(masses * (HUB_RADIUS + spans) ** 2, spans) + 8e-5 + 1.1e-5
 corner = 10.0
 tunnel = "van der Hoek, van den Abbeele, Simao Ferreira, van Wingerden, Wind Energy (2024), doi:10.1002/we.2896"
-oldenburg = "Schottler et al., J. Phys.: Conf. Ser. 753 (2016) 072030"
 lever = np.sin(np.radians(2.25))
 print(f'''# MoWiTO 0.6 tunnel turbine with a swashplate: a stand-in
 # SI units unless the key says otherwise. Every group names its source.
@@ -139,7 +138,7 @@ overhang = {OVERHANG}  # yaw axis to rotor apex, along the shaft
 hub_height = {HUB_HEIGHT}  # rotor apex
 
 [blade]
-source = "Chord and twist are not in the open text of {oldenburg}, which describes the machine. Estimated: optimum rotor with swirl for tip-speed ratio {DESIGN_RATIO:g} and lift {DESIGN_LIFT:g} of the airfoil SD7003, no wider than {WIDEST} m; validation/scripts/mowito_06.py"
+source = "Neither airfoil nor chord nor twist is in {tunnel}, and what it cites for the machine was not at hand. Assumed: airfoil SD7003, optimum rotor with swirl for tip-speed ratio {DESIGN_RATIO:g} and lift {DESIGN_LIFT:g}, no wider than {WIDEST} m; validation/scripts/mowito_06.py"
 stations = [
   # span, chord, twist_deg, prebend, sweep, polar
 {table([(s, c, t, 0.0, 0.0, n) for s, c, t, n in blade])}
@@ -188,7 +187,7 @@ center_of_mass = [0.05, 0.0, 0.025]  # from the tower top: downwind, left lookin
 yaw_bearing_mass = 0.0
 
 [drive_train]
-source = "Generator on the rotor's shaft: {oldenburg}. Fitted: efficiency, bearings included, so that electrical power is {MEASURED} of the wind's at tip-speed ratio 5 ({tunnel}) where blade-element momentum theory gives {POWER_COEFFICIENT} at the shaft. Estimated: inertia of a small DC motor, shaft"
+source = "Fitted: efficiency, bearings included, so that electrical power is {MEASURED} of the wind's at tip-speed ratio 5 ({tunnel}) where blade-element momentum theory gives {POWER_COEFFICIENT} at the shaft. Assumed: generator on the rotor's shaft, inertia of a small DC motor, stiffness of the shaft"
 gear_ratio = 1.0  # generator speed over rotor speed
 generator_inertia = 1.1e-05  # about the generator's own shaft
 gearbox_efficiency = 1.0
@@ -197,7 +196,7 @@ stiffness = 50.0  # torsion, low-speed side
 damping = 0.002  # torsion, low-speed side
 
 [pitch_actuator]
-source = "{tunnel}, par. 2.2: three stepper motors; 216 deg to and fro at 2.41 Hz was the most that they followed, which is 42 deg/s of pitch here. Estimated: lag, limits"
+source = "{tunnel}, par. 2.2: three stepper motors; 216 deg to and fro at 2.41 Hz, 41 deg/s of pitch here, was the most that they followed. Estimated: lag, limits"
 natural_frequency = 200.0  # rad/s
 damping_ratio = 0.8
 maximum_rate_deg_s = 42.0
@@ -249,7 +248,7 @@ pitch_gains = [
 ]
 
 [airfoils]
-source = "SD7003 (Selig, Donovan, Fraser, Airfoils at Low Speeds, 1989): computed by NeuralFoil 0.3.3, which stands in for XFOIL, for Reynolds number {REYNOLDS:.0e}, the blades' in 5 m/s, n_crit {N_CRIT:g}, with its flat-plate extension to the full circle; validation/scripts/mowito_06.py. Root: a cylinder. Beside large-eddy simulations of SD7003 at Reynolds number 6e4, lift at 4 deg is within 0.03"
+source = "Assumed: SD7003, coordinates as aerosandbox 4.2.10 has them; the turbine's own airfoil is not in the source. Computed by NeuralFoil 0.3.3, which stands in for XFOIL, for Reynolds number {REYNOLDS:.0e}, the blades' in 5 m/s, n_crit {N_CRIT:g}, with its extension to the full circle, and held against no measurement; validation/scripts/mowito_06.py. Root: a cylinder, drag assumed"
 
 [[airfoils.polar]]
 name = "root"

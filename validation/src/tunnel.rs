@@ -1,5 +1,7 @@
 //! The tunnel turbine with its swashplate, and the helix on the first of two, beside a published experiment.
 
+mod wake;
+
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, AtMost, Within};
 use crate::studies::{Carried, failure, find, summaries};
@@ -123,13 +125,14 @@ fn delivered(summaries: &[Summary], air: &str) -> Vec<Row> {
 /// `cases/tunnel-helix.toml`: two turbines at 5 D, baseline and helices, in the lattice.
 pub fn tunnel_helix() -> Vec<Row> {
     let case = Carried::Shipped("tunnel-helix");
-    let (summaries, _) = match summaries(case, "tunnel-helix", Vec::new()) {
+    let (summaries, folder) = match summaries(case, "tunnel-helix", Vec::new()) {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };
     let mut rows = baseline(&summaries);
     rows.extend(delivered(&summaries, "lattice"));
     rows.extend(powers(&summaries));
+    rows.extend(wake::rows(&folder));
     rows
 }
 

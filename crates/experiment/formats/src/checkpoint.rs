@@ -6,6 +6,7 @@
 //! says which run of which case it is, and what computed it.
 
 mod problem;
+mod told;
 
 pub use problem::CheckpointProblem;
 pub(crate) use problem::{ANEW, GONE};
@@ -107,10 +108,7 @@ impl CheckpointWriter {
     /// # Errors
     /// [`FileError::System`].
     pub fn state<T: Serialize>(&mut self, name: &str, state: &T) -> Result<(), FileError> {
-        self.stream(name, |writer| {
-            let bytes = postcard::to_stdvec(state).map_err(io::Error::other)?;
-            writer.write_all(&bytes)
-        })
+        self.stream(name, |writer| told::write_state(state, writer))
     }
 
     /// Writes what `write` writes as the section `name`, whose length need not be known.

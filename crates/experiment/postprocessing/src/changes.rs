@@ -4,12 +4,12 @@
 mod winds;
 
 use crate::PostprocessingError;
-use crate::error::InRecords;
+use crate::error::{InRecords, case_in};
 use crate::seeds::{Pair, SeedsError, Study, gain, pairs, seeds, turbine_names};
 use crate::signals::analysed;
 use crate::sweep::studies_with_runs;
 use analysis::fatigue::damage_equivalent_load;
-use analysis::statistics::{BLOCK_LENGTH, change_together, independent};
+use analysis::statistics::{change_together, independent};
 use basis::channels::TIME;
 use basis::records::{LoadKind, Series, Statistic, Summary};
 use formats::records::{self, RunFolder, read_series};
@@ -343,7 +343,8 @@ fn of_blocks(
     let interval = analysed(&series[0], from).map_or(0.0, |(_, _, interval)| interval);
     let pairs: Vec<[&[f64]; 2]> = columns.iter().map(|(now, before)| [&now[..], before]).collect();
     let load = |samples: &[f64]| damage_equivalent_load(samples, interval, slope, frequency);
-    Ok(change_together(&pairs, interval, BLOCK_LENGTH, load)?)
+    let block = case_in(pair.folder, &pair.run.0.case_text)?.time.block;
+    Ok(change_together(&pairs, interval, block, load)?)
 }
 
 /// The rows of one run, whose cells in each wind are `columns`.

@@ -10,6 +10,7 @@ mod sentence;
 mod study;
 pub mod text_table;
 mod trace;
+mod units;
 mod words;
 
 pub use answer::{AnswerRecords, AnswerTable};
@@ -23,6 +24,7 @@ pub use figures::synchronisation::{
     SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
+pub use units::are_of_models;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

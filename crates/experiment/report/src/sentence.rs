@@ -2,6 +2,7 @@
 
 use crate::RunRecords;
 use crate::study::{Excitation, ExcitationKind, Study, gain_of};
+use crate::units::{Unit, Units};
 use crate::words::{self, SPACE, number, percent};
 use basis::Sense;
 use basis::records::{Conditions, Statistic, Summary, TurbineSummary};
@@ -159,12 +160,13 @@ fn power_sentence(run: &RunRecords) -> String {
     const MOST_NAMED: usize = 6;
     let turbines = &run.summary.turbines;
     let power = |power: &Statistic| {
-        let decimals = words::three_figures(power.mean / 1e6);
+        let Unit { name, size } = Units::of_all([&run.summary]).power;
+        let decimals = words::three_figures(power.mean / size);
         let uncertain = match power.half_width_95 {
-            Some(_) => format!(" {}", words::interval(power, 1e6, decimals)),
+            Some(_) => format!(" {}", words::interval(power, size, decimals)),
             None => String::new(),
         };
-        format!("{}{uncertain}{SPACE}MW", number(power.mean / 1e6, decimals))
+        format!("{}{uncertain}{SPACE}{name}", number(power.mean / size, decimals))
     };
     let name = &run.summary.run;
     if is_summed(run) {
@@ -361,13 +363,18 @@ fn spread(values: &[f64], decimals: usize, unit: &str) -> Option<String> {
 
 /// "2100 s analysed in 3 ten-minute blocks".
 pub(crate) fn length(power: &Statistic, analysed: f64) -> String {
-    let seconds = format!("{}{SPACE}s analysed", number(analysed, 0));
+    let decimals = if analysed < 10.0 { 1 } else { 0 };
+    let seconds = format!("{}{SPACE}s analysed", number(analysed, decimals));
     match power.n_blocks {
         0 => seconds,
         1 => format!("{seconds} in one block"),
         n if (600.0 * n as f64..600.0 * (n + 1) as f64).contains(&analysed) => {
             format!("{seconds} in {n} ten-minute blocks")
         }
-        n => format!("{seconds} in {n} blocks of {}{SPACE}s", number(analysed / n as f64, 0)),
+        n => {
+            let each = analysed / n as f64;
+            let decimals = if each < 10.0 { 1 } else { 0 };
+            format!("{seconds} in {n} blocks of {}{SPACE}s", number(each, decimals))
+        }
     }
 }

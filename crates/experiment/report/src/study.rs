@@ -1,6 +1,7 @@
 //! A study seen as its reader sees it: which run is the measure, what was done, where things stand.
 
 use crate::layout::{self, Lane, Rotor};
+use crate::units::Units;
 use crate::{ReportError, RunRecords, StudyRecords};
 use basis::Sense;
 use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
@@ -97,6 +98,11 @@ impl<'a> Study<'a> {
             }
         }
         names
+    }
+
+    /// In what powers and thrusts are told.
+    pub(crate) fn units(&self) -> Units {
+        Units::of_all(self.runs().iter().map(|run| &run.summary))
     }
 
     /// Diameter of the first turbine's rotor (m).

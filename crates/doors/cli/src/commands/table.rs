@@ -2,6 +2,7 @@
 
 use wakemix::basis::records::{Load, LoadKind, Statistic, Summary, TurbineSummary};
 use wakemix::postprocessing::analyses::with_interval;
+use wakemix::report::are_of_models;
 use wakemix::report::text_table::{Column, TextTable, wrapped};
 
 /// Loads of which the 1-Hz damage-equivalent is printed: heading, channel, what it is.
@@ -24,14 +25,12 @@ const OF_TURBINES: Units =
     Units { power: ("kW", 1e3, 0), thrust: ("kN", 1e3, 0), moment: ("MN m", 1e3) };
 const OF_MODELS: Units =
     Units { power: ("W", 1.0, 3), thrust: ("N", 1.0, 3), moment: ("N m", 1e-3) };
-/// Turbines of which none makes more than this are models (W).
-const MODEL_POWER: f64 = 1e3;
 
 /// What suits the turbines of `summaries`.
 fn units(summaries: &[Summary]) -> &'static Units {
-    let powers = summaries.iter().flat_map(|summary| &summary.turbines);
-    let most = powers.map(|turbine| turbine.power.mean.abs()).fold(0.0, f64::max);
-    if most > 0.0 && most < MODEL_POWER { &OF_MODELS } else { &OF_TURBINES }
+    let turbines = summaries.iter().flat_map(|summary| &summary.turbines);
+    let is_model = are_of_models(turbines.map(|turbine| turbine.power.mean));
+    if is_model { &OF_MODELS } else { &OF_TURBINES }
 }
 
 /// Runs × turbines in `width` columns: power, gain, thrust, rotor speed; in a further table delivered

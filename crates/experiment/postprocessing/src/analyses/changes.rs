@@ -99,7 +99,7 @@ fn convention(answer: &ChangesAnswer) -> String {
         );
     }
     if n_values.iter().flatten().any(|n| *n == 1) {
-        text += "± 95 % in one wind: from blocks of ten minutes; none of fewer than two\n";
+        text += "± 95 % in one wind: from blocks, of ten minutes unless time.block says otherwise; none of fewer than two\n";
     }
     let loads = answer.rows.iter().filter_map(|row| match &row.quantity {
         Quantity::Load { slope, reference_frequency, .. } => {

@@ -3,7 +3,7 @@
 use super::curve::{CURVES, offset_panel};
 use super::{Joined, Synchronised};
 use crate::PostprocessingError;
-use analysis::statistics::{BLOCK_LENGTH, gain};
+use analysis::statistics::gain;
 use basis::channels::{GEN_PWR, TIME};
 use basis::records::{Series, Statistic, TurbineSummary};
 use formats::records::RunRecords;
@@ -138,7 +138,7 @@ fn together(
     };
     match (sum(read(&study.records.runs[run.run])?), sum(read(other)?)) {
         (Some((own, interval)), Some((other, _))) => {
-            Ok(Some(gain(&own, &other, interval, BLOCK_LENGTH)?))
+            Ok(Some(gain(&own, &other, interval, study.case.time.block)?))
         }
         _ => Ok(None),
     }

@@ -7,14 +7,17 @@ use crate::draw::whisker::{Style, whisker};
 use crate::draw::{Axis, Figure, Look, Role, Shape, TextStyle, text};
 use crate::study::Study;
 use crate::trace::{envelope, moving_mean, thinned};
+use crate::units::Unit;
 use crate::words;
 use basis::Channel;
 use basis::channels::{GEN_PWR, ROT_SPEED, TIME};
 use basis::records::Statistic;
 use std::f64::consts::TAU;
 
-/// Averaging of the thick lines (s).
+/// Averaging of the thick lines (s),
 const SMOOTHING: f64 = 30.0;
+/// less on models: so many times as long as the wind takes past the first rotor (–).
+const SMOOTHING_PASSES: f64 = 20.0;
 /// Above so many runs the unsmoothed lines would hide everything.
 const MOST_RAW_RUNS: usize = 4;
 const PANEL_HEIGHT: f64 = 165.0;
@@ -29,7 +32,7 @@ struct Quantity {
     name: &'static str,
     title: &'static str,
     channel: Channel,
-    label: &'static str,
+    label: String,
     unit: &'static str,
     /// SI value of one unit of the axis.
     scale: f64,
@@ -38,15 +41,16 @@ struct Quantity {
 
 /// Electrical power over time, a panel for each turbine, runs overlaid.
 pub(crate) fn power(study: &Study) -> Option<Figure> {
+    let Unit { name, size } = study.units().power;
     over_time(
         study,
         &Quantity {
             name: "power",
             title: "Power over time",
             channel: GEN_PWR,
-            label: "power (MW)",
-            unit: "MW",
-            scale: 1e6,
+            label: format!("power ({name})"),
+            unit: name,
+            scale: size,
             statistic: |turbine| turbine.power,
         },
     )
@@ -60,7 +64,7 @@ pub(crate) fn rotor_speed(study: &Study) -> Option<Figure> {
             name: "rotor-speed",
             title: "Rotor speed over time",
             channel: ROT_SPEED,
-            label: "rotor speed (rpm)",
+            label: "rotor speed (rpm)".to_owned(),
             unit: "rpm",
             scale: TAU / 60.0,
             statistic: |turbine| turbine.rotor_speed,
@@ -97,14 +101,22 @@ fn over_time(study: &Study, quantity: &Quantity) -> Option<Figure> {
         name: quantity.name.to_owned(),
         title: quantity.title.to_owned(),
         caption: format!(
-            "Thick: {SMOOTHING:.0} s moving mean{raw}. Grey: spin-up, not analysed. Marks at the \
+            "Thick: {} s moving mean{raw}. Grey: spin-up, not analysed. Marks at the \
              right: mean over the analysed time with its 95\u{a0}% interval; an arrow has the number of \
              an end beyond the axis.",
+            words::number(smoothing(study), usize::from(smoothing(study) < 10.0))
         ),
         width: WIDTH,
         height: frame_top + 14.0,
         shapes,
     })
+}
+
+/// Averaging of the thick lines of `study` (s).
+fn smoothing(study: &Study) -> f64 {
+    let conditions = &study.runs()[0].summary.conditions;
+    let pass = conditions.rotor_diameter / conditions.target_wind_speed;
+    SMOOTHING.min(SMOOTHING_PASSES * pass)
 }
 
 fn channel<'r>(
@@ -134,7 +146,7 @@ fn panel(
         let Some((times, values)) = channel(run, turbine, quantity) else { continue };
         let values: Vec<f64> = values.iter().map(|value| value / quantity.scale).collect();
         let interval = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-        let window = (SMOOTHING / interval).round().max(1.0) as usize;
+        let window = (smoothing(study) / interval).round().max(1.0) as usize;
         lines.push((colour, thinned(times, &moving_mean(&values, window), 480)));
         if with_raw {
             raw_lines.push((colour, envelope(times, &values, 420)));
@@ -151,7 +163,7 @@ fn panel(
     frame.rows(4, true, shapes);
     frame.columns(10, is_last, shapes);
     frame.title(turbine, shapes);
-    frame.y_label(quantity.label, 46.0, shapes);
+    frame.y_label(&quantity.label, 46.0, shapes);
     if is_last {
         frame.x_label("time (s)", shapes);
     }

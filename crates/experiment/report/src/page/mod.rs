@@ -64,6 +64,8 @@ pub(crate) fn render(study: &Study, figures: &Figures) -> Result<String, ReportE
         glance_heads,
         glance,
         rows => tables::results(study),
+        power_unit => study.units().power.name,
+        thrust_unit => study.units().thrust.name,
         has_gains => best.is_some(),
         load_conventions => loads::conventions(study),
         loads => loads::loads(study),

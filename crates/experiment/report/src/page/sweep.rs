@@ -3,6 +3,7 @@
 use super::{drawing, filled};
 use crate::draw::Figure;
 use crate::figures::sweep::{key_name, settings};
+use crate::units::{Unit, Units};
 use crate::{ReportError, words};
 use basis::records::{Statistic, SweepPart, SweepRow, SweepTable, SweptKey};
 use minijinja::{Value, context};
@@ -19,6 +20,8 @@ pub(crate) fn render(
 ) -> Result<String, ReportError> {
     let drawings = figures.iter().map(drawing).collect::<Result<Vec<_>, _>>()?;
     let parts = table.part_names();
+    let powers = table.rows.iter().flat_map(|row| &row.parts).map(|part| part.power.mean);
+    let unit = Units::of(powers).power;
     let own = context! {
         title => table.case.clone(),
         description => description(table),
@@ -27,8 +30,8 @@ pub(crate) fn render(
         convention => convention(table),
         remarks => table.remarks.iter().map(|remark| words::capitalised(remark)).collect::<Vec<_>>(),
         figures => drawings,
-        heads => heads(table, &parts),
-        rows => table.rows.iter().map(|row| line(table, row, &parts)).collect::<Vec<_>>(),
+        heads => heads(table, &parts, &unit),
+        rows => table.rows.iter().map(|row| line(table, row, &parts, &unit)).collect::<Vec<_>>(),
     };
     filled("sweep.html", TEMPLATE, own)
 }
@@ -83,15 +86,15 @@ fn convention(table: &SweepTable) -> String {
     }
 }
 
-fn heads(table: &SweepTable, parts: &[&str]) -> Vec<String> {
+fn heads(table: &SweepTable, parts: &[&str], unit: &Unit) -> Vec<String> {
     let mut heads = vec!["Run".to_owned()];
     heads.extend(table.keys.iter().map(key_name));
-    heads.extend(parts.iter().map(|name| format!("{name} (MW)")));
+    heads.extend(parts.iter().map(|name| format!("{name} ({})", unit.name)));
     heads.extend(parts.iter().map(|name| format!("{name} gain (%)")));
     heads
 }
 
-fn line(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Value {
+fn line(table: &SweepTable, row: &SweepRow, parts: &[&str], unit: &Unit) -> Value {
     let cell = |key: &SweptKey| {
         let degree = if key.label.ends_with("_deg") { "°" } else { "" };
         row.value(&key.key).map_or("–".to_owned(), |value| value.words() + degree)
@@ -101,7 +104,7 @@ fn line(table: &SweepTable, row: &SweepRow, parts: &[&str]) -> Value {
         let cell = |name: &&str| row.part(name).and_then(of).unwrap_or_else(|| "–".to_owned());
         parts.iter().map(cell).collect()
     };
-    cells.extend(cell(&|part| Some(number(&part.power, 1e-6, 3))));
+    cells.extend(cell(&|part| Some(number(&part.power, 1.0 / unit.size, 3))));
     cells.extend(cell(&|part| Some(number(&part.gain?, 100.0, 2))));
     let links: Vec<Value> = row
         .studies

@@ -4,6 +4,7 @@ use crate::RunRecords;
 use crate::draw::colour::Ink;
 use crate::sentence;
 use crate::study::Study;
+use crate::units::Unit;
 use crate::words::{self, SPACE, number, percent, three_figures};
 use basis::records::{Conditions, GridSummary, Statistic, Summary, TurbineSummary};
 use minijinja::{Value, context};
@@ -164,7 +165,7 @@ fn fact(label: &str, value: String, remark: String) -> Value {
 
 /// One row for each turbine of each run, and one for all together.
 pub(crate) fn results(study: &Study) -> Vec<Value> {
-    let mut rows = Vec::new();
+    let (units, mut rows) = (study.units(), Vec::new());
     for (run, &colour) in study.runs().iter().zip(&study.colours) {
         let summary = &run.summary;
         let has_total = summary.turbines.len() > 1 && sentence::is_summed(run);
@@ -186,9 +187,9 @@ pub(crate) fn results(study: &Study) -> Vec<Value> {
                 turbine => turbine.name.clone(),
                 control => turbine.control.description.clone(),
                 is_total => false,
-                power => quantity(&turbine.power, 1e6),
+                power => quantity(&turbine.power, units.power.size),
                 gain => gain(turbine.power_gain.as_ref()),
-                thrust => quantity(&turbine.thrust, 1e3),
+                thrust => quantity(&turbine.thrust, units.thrust.size),
                 rotor_speed => quantity(&turbine.rotor_speed, TAU / 60.0),
                 pitch,
             });
@@ -202,7 +203,7 @@ pub(crate) fn results(study: &Study) -> Vec<Value> {
                 turbine => "All".to_owned(),
                 control => String::new(),
                 is_total => true,
-                power => quantity(&summary.array_power, 1e6),
+                power => quantity(&summary.array_power, units.power.size),
                 gain => gain(summary.array_power_gain.as_ref()),
                 thrust => Vec::<String>::new(),
                 rotor_speed => Vec::<String>::new(),
@@ -222,8 +223,9 @@ pub(crate) fn glance(study: &Study) -> (Vec<String>, Vec<Value>) {
     let mut heads: Vec<String> = shown.iter().map(|name| (*name).to_owned()).collect();
     heads.extend(sums.then(|| "All".to_owned()));
     let cell = |power: &Statistic, gain: Option<&Statistic>| {
-        let megawatts = power.mean / 1e6;
-        let power = format!("{}{SPACE}MW", number(megawatts, three_figures(megawatts)));
+        let Unit { name, size } = study.units().power;
+        let mean = power.mean / size;
+        let power = format!("{}{SPACE}{name}", number(mean, three_figures(mean)));
         let change = gain.map_or(String::new(), words::gain);
         let is_gain = gain.map(|gain| gain.mean > 0.0);
         context! { power, change, is_gain }

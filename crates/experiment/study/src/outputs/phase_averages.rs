@@ -33,21 +33,23 @@ pub(super) static KIND: OutputKind = OutputKind {
 /// Bins are filled evenly enough to be told of as they are when none has fewer instants than this (–).
 const FEWEST_INSTANTS: u64 = 10;
 
-/// Points of all places and bins that `values` ask for in `run`; none where bins cannot be made.
-fn sizes(setup: &Prepared, run: &Run, values: &Values) -> Option<(Vec<u64>, Bins)> {
+/// All places and bins that `values` ask for in `run`; none where bins cannot be made.
+fn sizes(setup: &Prepared, run: &Run, values: &Values) -> Option<(Vec<Place>, Bins)> {
     let wanted = Wanted::of(setup, run, values)?;
-    let places = places::of(&setup.plan, values);
-    Some((places.iter().map(Place::n_points).collect(), wanted.bins.ok()?))
+    Some((places::of(&setup.plan, values), wanted.bins.ok()?))
 }
 
-/// Memory (bytes) that the phase averages of a run of `setup` take, at most.
+/// Memory (bytes) that the phase averages of a run of `setup` take, at most: sums, once more where they are
+/// read from a checkpoint, and the wind of now.
 pub(crate) fn memory(setup: &Prepared) -> u64 {
     let of_run = |run: &Run| {
         let further = setup.case.output.further.iter().filter(|one| one.kind.name() == KIND.name);
         let sizes = further.filter_map(|one| sizes(setup, run, &one.values));
-        let of_one = |(places, bins): (Vec<u64>, Bins)| {
-            let sums = places.iter().map(|n| PhaseAverager::memory(*n, &bins)).sum::<u64>();
-            sums + places.iter().sum::<u64>() * places::BUFFER_BYTES
+        let of_one = |(places, bins): (Vec<Place>, Bins)| {
+            let of_place = |place: &Place| {
+                2 * PhaseAverager::memory(place.n_points(), &bins) + place.buffers()
+            };
+            places.iter().map(of_place).sum::<u64>()
         };
         sizes.map(of_one).sum()
     };
@@ -57,8 +59,9 @@ pub(crate) fn memory(setup: &Prepared) -> u64 {
 /// Files, and the sums in two checkpoints.
 fn disk(setup: &Prepared, run: &Run, values: &Values) -> u64 {
     let Some((places, bins)) = sizes(setup, run, values) else { return 0 };
-    let of_place = |n: &u64| {
-        phase_averages_bytes(*n, bins.len() as u64) + 2 * PhaseAverager::memory(*n, &bins)
+    let of_place = |place: &Place| {
+        let n = place.n_points();
+        phase_averages_bytes(n, bins.len() as u64) + 2 * PhaseAverager::memory(n, &bins)
     };
     places.iter().map(of_place).sum()
 }

@@ -7,7 +7,7 @@ use flow::fields::FieldSource;
 use std::ops::Range;
 
 /// Memory of a point beside its sums (bytes): its velocity now.
-pub(super) const BUFFER_BYTES: u64 = 3 * size_of::<f32>() as u64;
+const BUFFER_BYTES: u64 = 3 * size_of::<f32>() as u64;
 /// Points that lie outside of an end by less than this count as on it (distances of points).
 const ROUNDING: f64 = 1e-6;
 
@@ -17,6 +17,8 @@ pub(super) struct Place {
     what: What,
     /// Points that are kept along x, y, z, of all that the plane or the volume has.
     kept: [Range<usize>; 3],
+    /// Points of the whole plane or volume (–).
+    n_whole: u64,
 }
 
 #[derive(Clone, Copy)]
@@ -39,22 +41,28 @@ pub(super) fn of(plan: &Plan, values: &Values) -> Vec<Place> {
     let mut places = Vec::new();
     for (key, axes, across, suffix) in kinds {
         for distance in values.numbers(key) {
-            let mut kept = kept(plan, values, 1, from);
+            let (mut kept, mut whole) = (kept(plan, values, 1, from), plan.n_points);
             // The plane itself has one point across.
-            kept[across] = 0..1;
+            (kept[across], whole[across]) = (0..1, 1);
             places.push(Place {
                 name: format!("{distance}{suffix}"),
                 what: What::Plane(axes, from[across] + distance * plan.diameter),
                 kept,
+                n_whole: product(whole),
             });
         }
     }
     if values.has("volume_stride") {
         let stride = values.number("volume_stride") as usize;
         let (what, kept) = (What::Volume(stride), kept(plan, values, stride, from));
-        places.push(Place { name: "volume".to_owned(), what, kept });
+        let n_whole = product(plan.n_points.map(|n| n.div_ceil(stride)));
+        places.push(Place { name: "volume".to_owned(), what, kept, n_whole });
     }
     places
+}
+
+fn product(n_points: [usize; 3]) -> u64 {
+    n_points.map(|n| n as u64).iter().product()
 }
 
 /// Points along x, y, z of every `stride`-th cell of `plan` that `values` keep; lengths count `from` the first
@@ -79,7 +87,12 @@ fn kept(plan: &Plan, values: &Values, stride: usize, from: [f64; 3]) -> [Range<u
 impl Place {
     /// Points that are kept (–).
     pub(super) fn n_points(&self) -> u64 {
-        self.kept.iter().map(|range| range.len() as u64).product()
+        product(self.kept.each_ref().map(|range| range.len()))
+    }
+
+    /// Memory of the velocity that it looks at (bytes): all of it, and what is kept.
+    pub(super) fn buffers(&self) -> u64 {
+        (self.n_whole + self.n_points()) * BUFFER_BYTES
     }
 }
 

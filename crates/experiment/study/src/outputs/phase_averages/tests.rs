@@ -34,14 +34,17 @@ fn bins_and_points_are_known_before_the_run() {
     // 7.5 × 9 / 62.94 over 2π × 0.35 × 9 / 125.88: 6.82 revolutions a cycle, 14 in two.
     assert_eq!(helix.1.len(), 14 * 12);
     // A diameter has eight cells: eight along, ten across, sixteen up.
-    let points = &helix.0;
+    let points: Vec<u64> = helix.0.iter().map(Place::n_points).collect();
     assert_eq!(points[0], 10 * 16);
     assert_eq!(points[1], points[0]);
     assert_eq!(points[2], 8 * 10);
     assert!((4 * 5 * 8..=5 * 5 * 8).contains(&points[3]), "{points:?}");
     let all: u64 = points.iter().sum();
-    let sums = all * (169 * (4 + 72) + 12) + 12 * all;
-    assert_eq!(memory(&setup), sums);
+    let sums = all * (169 * (4 + 72) + 12);
+    // Beside them three numbers of four bytes at each point of whole planes and of the whole volume.
+    let [n_x, n_y, n_z] = setup.plan.n_points.map(|n| n as u64);
+    let whole = 2 * n_y * n_z + n_x * n_y + n_x.div_ceil(2) * n_y.div_ceil(2) * n_z.div_ceil(2);
+    assert_eq!(memory(&setup), 2 * sums + 12 * (all + whole));
     assert!(disk(&setup, &setup.case.runs[1], values) > 2 * sums);
 }
 
