@@ -3,11 +3,12 @@
 //! Vortices that nobody holds keep their impulse and their angular impulse, so that both grow by the forces
 //! of the blades alone (Saffman, Vortex Dynamics, 1992, §§ 3.2 and 3.5). They are held against all that the
 //! blades have given since they began to turn: from one turn to the next the impulse of a tangled wake grows
-//! by a tenth more or less than it should, with every way of summing alike. Behind a rotor that turns
-//! evenly the
-//! flow is steady for who turns with it; where there are no vortices its total pressure is then short of the
-//! wind's by ρ Ω r |w|, w the swirl, and the fluxes of momentum and of angular momentum through a plane are
-//! thrust and torque. The blades' profile drag is left out on both sides: it leaves no vortices.
+//! by a tenth more or less than it should, with every way of summing alike.
+//!
+//! Behind a rotor that turns evenly the flow is steady for who turns with it; where there are no vortices
+//! its total pressure is then short of the wind's by ρ Ω r |w|, w the swirl, and the fluxes of momentum and
+//! of angular momentum through a plane are thrust and torque. The blades' profile drag is left out on both
+//! sides: it leaves no vortices.
 //!
 //! Energy: with that pressure p + ½ ρ |u|² is ρ Ω r w short of the wind's, point by point (w against the
 //! rotor's sense), so that the mechanical energy that a plane behind the rotor lacks is Ω times the flux of

@@ -48,7 +48,7 @@ pub(super) const USUAL: Fineness = Fineness {
     far_filaments: 9,
     far_stride: 2,
     core_widths: 0.23,
-    settling: 20.0,
+    settling: 40.0,
 };
 
 /// Power and thrust of three rotors without tilt, precone and prebend.
@@ -134,7 +134,7 @@ pub(super) fn wake(
     let rows = |diameters: f64, share: f64| {
         (diameters * diameter / (share * wind_speed * interval)).ceil() as usize
     };
-    let far_rows = rows(fineness.length, 0.4) / fineness.far_stride;
+    let far_rows = rows(fineness.length, 0.25) / fineness.far_stride;
     let settings = WakeSettings {
         interval,
         resolution: Resolution {

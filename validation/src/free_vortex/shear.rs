@@ -4,7 +4,7 @@
 use crate::Row;
 use crate::row::Tolerance::Within;
 use crate::studies::{Carried, failure, summaries};
-use analysis::wake::{centre, disc_average};
+use analysis::wake::{disc_average, middle_of_deficit};
 use basis::records::{Plane, PlaneAxes};
 use flow::inflow::MeanProfile;
 use formats::records::read_study;
@@ -19,8 +19,11 @@ const DISTANCES: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 const SOURCE: &str = "the lattice on 20 cells a diameter";
 /// Accepted distance of the wake's height (diameters), and of the wind over a rotor's disc (over the hub's),
 /// from the lattice's.
-const HEIGHT: f64 = 0.1;
+const HEIGHT: f64 = 0.03;
 const WIND: f64 = 0.05;
+/// Within so many diameters of the rotor's axis the middle of the deficit is the wake's place: as far as the
+/// ground allows.
+const AROUND: f64 = 0.7;
 
 /// What moves the air, and the keys of the case that say so.
 const LATTICE: [&str; 1] = ["flow.cells_per_diameter=20"];
@@ -34,9 +37,8 @@ const VORTEX: [&str; 6] = [
 ];
 const FREE: [&str; 2] = ["carried", "left-out"];
 
-/// At each distance: height of the wake over the hub (diameters), and mean wind over the disc of a
-/// rotor there
-/// over the hub's wind.
+/// At each distance: height of the wake over the hub (diameters), and mean wind over the disc of a rotor
+/// there over the hub's wind.
 type Wake = [[f64; 2]; DISTANCES.len()];
 
 pub(super) fn rows() -> Vec<Row> {
@@ -60,7 +62,7 @@ fn made() -> Result<Vec<Row>, String> {
                 unit,
                 source: SOURCE,
             };
-            rows.push(row("height of the wake less the lattice's", 0, HEIGHT, "D"));
+            rows.push(row("middle of the deficit above the lattice's", 0, HEIGHT, "D"));
             let what = "mean wind over a rotor's disc less the lattice's, over the hub's wind";
             rows.push(row(what, 1, WIND, "–"));
         }
@@ -91,7 +93,9 @@ fn wake(name: &str, keys: Vec<String>) -> Result<Wake, String> {
 fn seen(plane: &Plane) -> Result<[f64; 2], analysis::AnalysisError> {
     let profile =
         MeanProfile::PowerLaw { hub_height: HUB_HEIGHT, speed: SPEED, exponent: EXPONENT };
-    let [_, height] = centre(plane, |height| profile.speed(height), 0.25 * DIAMETER)?;
-    let disc = disc_average(plane, [0.0, HUB_HEIGHT], 0.5 * DIAMETER)?;
+    let around = [0.0, HUB_HEIGHT];
+    let free_stream = |height| profile.speed(height);
+    let [_, height] = middle_of_deficit(plane, free_stream, around, AROUND * DIAMETER)?;
+    let disc = disc_average(plane, around, 0.5 * DIAMETER)?;
     Ok([(height - HUB_HEIGHT) / DIAMETER, disc.mean / SPEED])
 }

@@ -9,7 +9,7 @@ mod profile;
 mod recentred;
 mod swing;
 
-pub use centre::{centre, centre_line};
+pub use centre::{centre, centre_line, middle_of_deficit};
 pub use disc::{Disc, disc_average};
 pub use phase_average::{PhaseAverage, PhasePlane};
 pub use profile::{Profile, along_first, along_second, velocity_at};

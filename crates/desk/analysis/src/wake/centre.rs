@@ -52,6 +52,42 @@ pub fn centre(
     ])
 }
 
+/// Middle of the velocity deficit U(z) − u (y and z, farm frame, m) within `radius` (m) of `around` (y and z)
+/// in a crosswind `plane`: its first moment over its integral.
+///
+/// Where a jet blows through the wake's middle or its deficit is uneven, [`centre`] follows the deeper side;
+/// this follows the whole. What lies beyond the circle it does not see.
+///
+/// # Errors
+/// [`AnalysisError::WrongPlane`] unless the plane lies across the wind, [`AnalysisError::OutsidePlane`] where
+/// the circle holds no deficit.
+pub fn middle_of_deficit(
+    plane: &Plane,
+    free_stream: impl Fn(f64) -> f64,
+    around: [f64; 2],
+    radius: f64,
+) -> Result<[f64; 2], AnalysisError> {
+    expect_axes(plane, &[PlaneAxes::Crosswind], "one across the wind")?;
+    let [n_first, _] = plane.n_points;
+    let start = origin(plane);
+    let (mut moment, mut whole) = ([0.0; 2], 0.0);
+    for (index, u) in plane.velocity[0].iter().enumerate() {
+        let y = start[0] + (index % n_first) as f64 * plane.spacing[0];
+        let z = start[1] + (index / n_first) as f64 * plane.spacing[1];
+        let from = [y - around[0], z - around[1]];
+        if from[0].hypot(from[1]) < radius {
+            let deficit = free_stream(z) - f64::from(*u);
+            whole += deficit;
+            moment = [0, 1].map(|axis| moment[axis] + deficit * from[axis]);
+        }
+    }
+    if whole <= 0.0 {
+        let [first, second] = around;
+        return Err(AnalysisError::OutsidePlane { name: plane.name.clone(), first, second });
+    }
+    Ok([0, 1].map(|axis| around[axis] + moment[axis] / whole))
+}
+
 /// Wake centre at each x of a horizontal or streamwise `plane`: pairs of x and y (or z), farm frame (m).
 ///
 /// As [`centre`], in one dimension; upstream of the rotor the result means nothing.

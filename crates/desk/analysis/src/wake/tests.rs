@@ -105,6 +105,21 @@ fn disc_average_of_a_gaussian_wake() {
 }
 
 #[test]
+fn the_middle_of_a_deficit_is_its_first_moment() {
+    // A disc of even deficit that grows upwards by s: its middle is s R² / 4 over the deficit above its own.
+    let (centre, slope) = ([13.0, 120.0], 0.01);
+    let uneven = |[_, y, z]: [f64; 3]| {
+        let inside = f64::hypot(y - centre[0], z - centre[1]) < 80.0;
+        sheared(z) - if inside { 4.0 + slope * (z - centre[1]) } else { 0.0 }
+    };
+    let plane = plane(PlaneAxes::Crosswind, [0.0, -400.0, 4.0], [81, 50], uneven);
+    let [y, z] = middle_of_deficit(&plane, sheared, [0.0, 110.0], 105.0).expect("a wake");
+    let expected = centre[1] + slope * 80.0_f64.powi(2) / 4.0 / 4.0;
+    assert!((y - centre[0]).abs() < 0.5 && (z - expected).abs() < 0.5, "{y} {z} {expected}");
+    assert!(middle_of_deficit(&plane, sheared, [-300.0, 110.0], 50.0).is_err());
+}
+
+#[test]
 fn profiles_hold_the_planes_own_values() {
     let plane = crosswind();
     let along = along_first(&plane, 4.0 + 8.0 * 7.0).expect("inside");

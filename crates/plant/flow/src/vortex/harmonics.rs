@@ -1,11 +1,9 @@
 //! Solid harmonics: what vortex elements in a ball amount to outside of it.
 //!
-//! Regular ones Υ and irregular ones Θ, for which 1/|x − y| = Σ Υ̅(y) Θ(x) where y is nearer to the
-//! origin, are
-//! those of Legendre's functions P without the sign of Condon and Shortley: Υ = rⁿ P e^(imφ) / (n + m)!,
-//! Θ = (n − m)! P e^(imφ) / rⁿ⁺¹. Orders below zero follow from those above, f(n, −m) = (−1)ᵐ f̅(n, m),
-//! so that
-//! only those from zero on are kept, degree after degree.
+//! Regular ones Υ and irregular ones Θ, for which 1/|x − y| = Σ Υ̅(y) Θ(x) where y is nearer to the origin,
+//! are those of Legendre's functions P without the sign of Condon and Shortley: Υ = rⁿ P e^(imφ) / (n + m)!,
+//! Θ = (n − m)! P e^(imφ) / rⁿ⁺¹. Orders below zero follow from those above,
+//! f(n, −m) = (−1)ᵐ f̅(n, m), so that only those from zero on are kept, degree after degree.
 //!
 //! Source for recurrences and sums of places: Dehnen (2014), Computational Astrophysics and Cosmology 1:1,
 //! appendix A, with other signs.

@@ -20,7 +20,7 @@ pub(super) unsafe fn near<V: Simd>(
     sums: &mut Lanes,
 ) {
     let way = (way * (1.0 / UNIT)).to_array().map(|value| V::splat(value as f32));
-    let (zero, two, tiny) = (V::splat(0.0), V::splat(2.0), V::splat(1e-37));
+    let (zero, one, two, tiny) = (V::splat(0.0), V::splat(1.0), V::splat(2.0), V::splat(1e-37));
     for lane in (0..GROUP).step_by(V::LANES) {
         // SAFETY: places and sums have as many values as a group, a multiple of the lanes.
         let (at, mut sum): ([V; 3], [V; 3]) = unsafe {
@@ -43,9 +43,13 @@ pub(super) unsafe fn near<V: Simd>(
             let p = product * inverse;
             // None of it where the place is an end but for rounding, as in `per_circulation`.
             let share = exact * inverse * inverse;
+            // As little of it where the place is on the line but for rounding.
+            let off = dot(&c, &c);
+            let missing = off.sub_from(V::splat(segment.grain), one).maximum(zero);
+            let share = missing.sub_from(share, share);
             // h², with what is added beyond the ends.
             let beyond = (e * (e - length)).maximum(zero);
-            let reach = beyond.mul_add(V::splat(BEYOND as f32), dot(&c, &c));
+            let reach = beyond.mul_add(V::splat(BEYOND as f32), off);
             // s = p + |d|; (p − d)/c² is 1/s ahead of both ends, and s/c² between them.
             let s = p + d.maximum(zero - d);
             let difference = d.where_negative(s * s * V::splat(segment.inverse_squared), reach);

@@ -44,9 +44,8 @@ pub struct WakeSettings {
 /// What the shear and veer of the mean wind do to wakes.
 ///
 /// Vortex rings that are carried faster above than below lean downwind, and what leans moves itself upwards.
-/// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it;
-/// here the
-/// wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free
+/// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it; here
+/// the wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free
 /// vortices".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanShear {
@@ -65,14 +64,12 @@ pub enum MeanShear {
 }
 
 impl MeanShear {
-    /// What does not carry a wake at `height` (m) whose hub is at `of_hub` (m): m/s, farm frame.
-    pub(super) fn left_out(&self, height: f64, of_hub: f64) -> Vector3 {
+    /// The mean wind at `height` (m), of which wakes are carried by its value at their own hubs (m/s, farm
+    /// frame); none where it carries them as it is.
+    pub(super) fn left_out(&self, height: f64) -> Vector3 {
         let Self::LeftOut { profile, hub_height, veer } = self else { return Vector3::ZERO };
-        let mean = |height: f64| {
-            let [x, y] = veered(profile.speed(height), *veer, height - hub_height);
-            Vector3::new(x, y, 0.0)
-        };
-        mean(height) - mean(of_hub)
+        let [x, y] = veered(profile.speed(height), *veer, height - hub_height);
+        Vector3::new(x, y, 0.0)
     }
 }
 

@@ -7,8 +7,9 @@ use super::strain::Life;
 use super::strip::Strip;
 use basis::Vector3;
 
-/// Least area of a ring over that of those which it stands for (–).
-const LEAST_AREA: f64 = 0.7;
+/// Most that a ring has of the mean circulation of those which it stands for, and the inverse of the least (–).
+const MOST_OF_MEAN: f64 = 1.4;
+
 /// How the wakes of blades are resolved, and where they end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
@@ -120,28 +121,32 @@ impl Sheet {
     }
 
     /// Makes one row further down of the oldest rows near the blade. A ring has as much circulation times
-    /// area as those that it stands for, so that the impulse of the wake stays although chords cut arcs
-    /// short.
+    /// vector area as those that it stands for, so that the impulse of the wake stays although chords cut
+    /// arcs short and sheets roll up.
     fn coarsen(&mut self) {
         let Self { near, far, kept, resolution, .. } = self;
         let stride = resolution.far_stride;
         let area = |rows: [usize; 2], nodes: [usize; 2]| {
             let [old, young] = rows.map(|row| near.row(row));
             let diagonals = [young[nodes[1]] - old[nodes[0]], young[nodes[0]] - old[nodes[1]]];
-            0.5 * diagonals[0].cross(diagonals[1]).length()
+            0.5 * diagonals[0].cross(diagonals[1])
         };
         let ring = |pair: &[usize]| {
-            let (mut impulse, mut areas) = (0.0, 0.0);
+            let (mut impulse, mut circulation, mut areas) = (Vector3::ZERO, 0.0, 0.0);
             for row in 0..stride {
                 for s in pair[0]..pair[1] {
                     let of_ring = area([row, row + 1], [s, s + 1]);
                     impulse += of_ring * near.rings(row)[s];
-                    areas += of_ring;
+                    circulation += of_ring.length() * near.rings(row)[s];
+                    areas += of_ring.length();
                 }
             }
-            // A folded ring has no area to speak of.
-            let own = area([0, stride], [pair[0], pair[1]]).max(LEAST_AREA * areas);
-            if own > 0.0 { impulse / own } else { 0.0 }
+            let own = area([0, stride], [pair[0], pair[1]]);
+            let mean = if areas > 0.0 { circulation / areas } else { 0.0 };
+            // A folded ring has no area to speak of: there the mean has to do.
+            let (few, many) = (mean / MOST_OF_MEAN, mean * MOST_OF_MEAN);
+            let found = impulse.dot(own) / own.length_squared();
+            if found.is_finite() { found.clamp(few.min(many), few.max(many)) } else { mean }
         };
         let nodes = kept.iter().map(|&s| (near.positions[s], near.velocities[s]));
         far.push(nodes, near.ages[0], kept.windows(2).map(ring));
@@ -338,8 +343,9 @@ mod tests {
     use super::*;
 
     /// Impulse over density, ½ Σ Γ x × dl, of the wake that a blade of 60 m leaves in two turns at
-    /// `resolution` (m⁴/s).
-    fn impulse(resolution: Resolution) -> Vector3 {
+    /// `resolution` (m⁴/s), the blade being bent downwind in the middle by `bend` (rad) from its root to its
+    /// tip.
+    fn impulse(resolution: Resolution, bend: f64) -> Vector3 {
         const N: usize = 16;
         let cores = Cores {
             initial_widths: 0.1,
@@ -355,8 +361,12 @@ mod tests {
             let angle = std::f64::consts::TAU * f64::from(step) / 48.0;
             let radial = Vector3::new(0.0, -angle.sin(), angle.cos());
             let place = Vector3::X * (-0.8 * f64::from(step));
-            let line: Vec<Vector3> =
-                (0..=N).map(|s| place + radial * (4.0 + 56.0 * s as f64 / N as f64)).collect();
+            let (mut line, mut node) = (Vec::new(), place + radial * 4.0);
+            for s in 0..=N {
+                line.push(node);
+                let (sine, cosine) = (bend * (0.5 - (s as f64 + 0.5) / N as f64)).sin_cos();
+                node += (radial * cosine + Vector3::X * sine) * (56.0 / N as f64);
+            }
             sheet.place_line(&line, &circulations);
         }
         let mut segments = Vec::new();
@@ -378,14 +388,19 @@ mod tests {
             end: f64::INFINITY,
             far_rows: 100,
         };
-        let whole = impulse(fine);
-        // The blade pushes the air upwind: its rings point that way.
-        assert!(whole.x.abs() > 1e5 && whole.x.abs() > 10.0 * whole.y.hypot(whole.z), "{whole}");
-        for (far_stride, far_filaments) in [(1, 5), (2, 9), (4, 5), (4, 2)] {
-            let coarse = impulse(Resolution { near_rows: 8, far_stride, far_filaments, ..fine });
-            // Rings are tilted by their pitch, each by another angle: of that squared, a hundredth, some.
-            let error = (coarse.x / whole.x - 1.0).abs();
-            assert!(error < 5e-3, "{far_stride} {far_filaments}: {coarse} {whole}");
+        // Straight, and rolled up as far as the joined rings' sides can follow.
+        for bend in [0.0, 1.0] {
+            let whole = impulse(fine, bend);
+            // The blade pushes the air upwind: its rings point that way.
+            let across = whole.y.hypot(whole.z);
+            assert!(whole.x.abs() > 1e5 && whole.x.abs() > 10.0 * across, "{whole}");
+            for (far_stride, far_filaments) in [(1, 5), (2, 9), (4, 5), (4, 2)] {
+                let resolution = Resolution { near_rows: 8, far_stride, far_filaments, ..fine };
+                let coarse = impulse(resolution, bend);
+                // Rings are tilted by their pitch, each by another angle: of that squared, a hundredth, some.
+                let error = (coarse.x / whole.x - 1.0).abs();
+                assert!(error < 5e-3, "{bend} {far_stride} {far_filaments}: {coarse} {whole}");
+            }
         }
     }
 }

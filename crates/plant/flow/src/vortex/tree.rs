@@ -22,6 +22,9 @@ const N_KINDS: usize = 3;
 const LONG: usize = 8;
 /// Distance from an end of a segment at which a place is that end, over the core (–).
 const AT_END: f64 = 2e-3;
+/// Roundings of its box's and its own size by which a place on a segment's line may be off it (–): its ends,
+/// its direction, the place and the way between their centres have one each, and sums of them.
+const ROUNDINGS: f64 = 16.0;
 const MOST_PARTS: usize = N_KINDS * MOST_SHARES;
 
 /// A segment in single precision, relative to the centre of the box that it is in and in [`UNIT`]s.
@@ -40,6 +43,8 @@ pub(super) struct Narrow {
     /// Square of the product of the distances from both ends at which a place is an end itself: at some
     /// thousandths of the core, as far as rounding may bring it.
     pub(super) floor: f32,
+    /// 1/δ², where δ is the distance from its line that rounding makes of none.
+    pub(super) grain: f32,
 }
 
 /// Boxes of segments, and what each amounts to from afar.
@@ -98,8 +103,7 @@ impl Tree {
     }
 
     /// Boxes that `most` segments have at the most (–): halves of halves, with half of [`LEAF`] or more
-    /// in each
-    /// that is not divided.
+    /// in each that is not divided.
     pub(super) fn most_boxes(most: usize) -> usize {
         4 * most / LEAF + 2 * N_KINDS
     }
@@ -381,6 +385,8 @@ impl Narrow {
         let narrow = |way: Vector3| way.to_array().map(|x| x as f32);
         let (along, length) = ((to - from).normalize_or_zero(), (to - from).length() / UNIT);
         let inverse_squared = if along == Vector3::ZERO { 0.0 } else { length.powi(-2) };
+        let size = (from - centre).length() / UNIT + length;
+        let off = ROUNDINGS * 0.5 * f64::from(f32::EPSILON) * size;
         Self {
             from: narrow((from - centre) / UNIT),
             along: narrow(along),
@@ -391,6 +397,7 @@ impl Narrow {
             core: (core_squared / UNIT.powi(2)).powi(2) as f32,
             floor: (AT_END.powi(2) * core_squared / UNIT.powi(2) * length.powi(2)).max(1e-37)
                 as f32,
+            grain: off.powi(-2).min(1e30) as f32,
         }
     }
 }

@@ -29,8 +29,7 @@ const LOWEST: f64 = 0.01;
 ///
 /// Limits: the air is incompressible and free of turbulence of its own making; vorticity of shear in the wind
 /// is not bent by the rotors, and what it would hold against is left out with it ([`MeanShear`]); bodies
-/// do not
-/// push the air aside.
+/// do not push the air aside.
 pub struct FreeWake {
     pub(super) settings: WakeSettings,
     pub(super) wind: PrescribedWind,
@@ -232,8 +231,9 @@ impl FreeWake {
         let of_bodies = bodies.iter().map(|body| (body.positions.len(), body.position.z));
         let mut places = winds.iter_mut().zip(nodes.iter());
         for (n_nodes, of_hub) in of_sheets.chain(of_bodies) {
+            let at_hub = shear.left_out(of_hub);
             for (wind, node) in places.by_ref().take(n_nodes) {
-                *wind -= shear.left_out(node.z, of_hub);
+                *wind -= shear.left_out(node.z) - at_hub;
             }
         }
     }
