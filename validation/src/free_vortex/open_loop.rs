@@ -21,7 +21,7 @@ const HELIX: &str = "helix";
 const N_TURBINES: usize = 2;
 /// Two turns of the helix (s): the blocks of which intervals are made.
 const BLOCK: f64 = 84.0;
-/// Wöhler's exponent of composite blades (–).
+/// Wöhler's exponent of composite blades (–), this program's choice: the source names none.
 const SLOPE: f64 = 10.0;
 
 /// What is compared: its name, the channel of a turbine, and whether its damage-equivalent load is meant.
