@@ -106,8 +106,8 @@ fn disc_average_of_a_gaussian_wake() {
 
 #[test]
 fn the_middle_of_a_deficit_is_its_first_moment() {
-    // A paraboloid, 4 m/s in the middle and nought at R, times one and a slope s upwards: its middle is s R²/6
-    // above its own.
+    // A paraboloid, 4 m/s in the middle and nought at R, times one and a slope s upwards: its first moment is
+    // s R²/6 above its axis.
     let (centre, slope, radius) = ([13.0, 120.0], 0.005, 80.0_f64);
     let uneven = |[_, y, z]: [f64; 3]| {
         let share = 1.0 - (f64::hypot(y - centre[0], z - centre[1]) / radius).powi(2);

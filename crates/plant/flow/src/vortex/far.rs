@@ -1,9 +1,9 @@
 //! What a far box amounts to at places next to each other.
 
 use super::division::Cluster;
+use super::narrow::UNIT;
 use super::near::dot;
 use super::neighbours::{GROUP, Lanes};
-use super::tree::UNIT;
 use crate::simd::Simd;
 use basis::Vector3;
 

@@ -5,10 +5,11 @@
 
 use super::far::far;
 use super::harmonics::{HIGHEST_DEGREE, LOWEST_DEGREE, n_coefficients};
+use super::narrow::UNIT;
 use super::near::near;
 use super::neighbours::{GROUP, Lanes};
 use super::segment::Segment;
-use super::tree::{Tree, UNIT};
+use super::tree::Tree;
 use crate::pool::Pool;
 use crate::simd::{Backend, Portable, Simd};
 use basis::Vector3;

@@ -13,6 +13,7 @@ mod filaments;
 mod full_length;
 mod graph;
 mod harmonics;
+mod narrow;
 mod near;
 mod neighbours;
 mod planes;

@@ -1,8 +1,8 @@
 //! What near segments induce at places next to each other, one by one.
 
+use super::narrow::{Narrow, UNIT};
 use super::neighbours::{GROUP, Lanes};
 use super::segment::BEYOND;
-use super::tree::{Narrow, UNIT};
 use crate::simd::Simd;
 use basis::Vector3;
 
