@@ -357,8 +357,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "wake-analysis",
-        about: "analyses of wakes on fields whose answers are known: vortices, leapfrogging pairs, phases, particles, fluxes, modes",
-        cost: Cost::UnderAMinute,
+        about: "analyses of wakes on fields whose answers are known: vortices, leapfrogging pairs, phases, particles, fluxes, modes; budget of a lattice wake",
+        cost: Cost::Minutes(3),
         run: crate::wake_analysis::wake_analysis,
         pictures: None,
         page: "wake-analysis",

@@ -1,6 +1,8 @@
-//! Analyses of wakes on fields whose answers are known: phases, vortices, particles, fluxes, modes.
+//! Analyses of wakes on fields whose answers are known: phases, vortices, particles, fluxes, modes; the budget
+//! of a wake on the lattice.
 
 mod fields;
+mod lattice;
 mod modes;
 mod particles;
 mod phases;
@@ -12,7 +14,7 @@ use crate::random::Random;
 /// All of them, in the order of their page.
 ///
 /// # Panics
-/// When the stored spectral modes cannot be read, or a synthetic field is refused.
+/// When the stored spectral modes cannot be read, a synthetic field is refused, or the lattice diverges.
 pub fn wake_analysis() -> Vec<Row> {
     let mut random = Random(20);
     let mut rows = vortices::rows();
@@ -20,5 +22,6 @@ pub fn wake_analysis() -> Vec<Row> {
     rows.extend(particles::rows(&mut random));
     rows.extend(fields::rows());
     rows.extend(modes::rows());
+    rows.extend(lattice::rows(&mut random));
     rows
 }
