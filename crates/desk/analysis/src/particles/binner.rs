@@ -105,16 +105,17 @@ impl Binner {
         let n_terms = settings.n_terms();
         let stride = settings.stride();
         self.n[index] = self.n[index].saturating_add(1);
-        let (squares, rest) =
-            self.sums[index * stride..(index + 1) * stride].split_first_mut().expect("a stride");
-        *squares += weight * weight;
-        let (products, rest) = rest.split_at_mut(n_terms * (n_terms + 1) / 2);
+        let n_products = n_terms * (n_terms + 1) / 2;
+        let bin = &mut self.sums[index * stride..(index + 1) * stride];
+        let (squares, rest) = bin.split_at_mut(n_products);
+        let (products, rest) = rest.split_at_mut(n_products);
         let (moments, velocities) = rest.split_at_mut(3 * n_terms);
-        let mut next = products.iter_mut();
+        let mut next = products.iter_mut().zip(squares);
         for row in 0..n_terms {
             let weighted = weight * terms[row];
-            for (term, product) in terms[..=row].iter().zip(&mut next) {
+            for (term, (product, square)) in terms[..=row].iter().zip(&mut next) {
                 *product += weighted * term;
+                *square += weight * weighted * term;
             }
         }
         for (component, moments) in moments.chunks_exact_mut(n_terms).enumerate() {

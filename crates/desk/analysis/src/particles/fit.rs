@@ -10,8 +10,9 @@ const APART: f64 = 1e-6;
 
 /// The sums of one bin, as [`BinSettings::stride`] lays them out.
 pub(super) struct Sums<'a> {
-    /// Sum of the squares of the weights.
-    pub(super) squares: f64,
+    /// Lower triangle of the products of terms by the squares of the weights, row by row: what scatters alike
+    /// in all samples makes coefficients scatter by.
+    squares: &'a [f64],
     /// Lower triangle of the products of terms, row by row.
     products: &'a [f64],
     /// Terms times u, v, w, one component after the other.
@@ -38,9 +39,11 @@ pub(super) struct Fitted {
 
 impl<'a> Sums<'a> {
     pub(super) fn of(bin: &'a [f64], n_terms: usize) -> Self {
-        let (products, rest) = bin[1..].split_at(n_terms * (n_terms + 1) / 2);
+        let n_products = n_terms * (n_terms + 1) / 2;
+        let (squares, rest) = bin.split_at(n_products);
+        let (products, rest) = rest.split_at(n_products);
         let (moments, velocities) = rest.split_at(3 * n_terms);
-        Self { squares: bin[0], products, moments, velocities, n_terms }
+        Self { squares, products, moments, velocities, n_terms }
     }
 
     /// The polynomial of the highest order for which `n` samples are enough and apart; none where there are
@@ -55,10 +58,11 @@ impl<'a> Sums<'a> {
         let n = n_terms(order, axes);
         let lower = self.factor(n)?;
         let weight = self.products[0];
-        let coefficients = [0, 1, 2].map(|component| self.solved(&lower, n, component));
-        // Number of samples of equal weight that are as good.
-        let effective = weight * weight / self.squares;
-        let free = (1.0 - n as f64 / effective).max(f64::EPSILON);
+        let coefficients = [0, 1, 2].map(|component| {
+            solved(&lower, n, |term| self.moments[component * self.n_terms + term])
+        });
+        let (spread, taken) = self.spread(&lower, n);
+        let free = (1.0 - taken / weight).max(f64::EPSILON);
         let moment = |component: usize, term: usize| self.moments[component * self.n_terms + term];
         let stress = std::array::from_fn(|place| {
             let [first, second] = STRESSES[place];
@@ -68,7 +72,6 @@ impl<'a> Sums<'a> {
             // Rounding may leave less than nothing of a square.
             if first == second { left.max(0.0) } else { left }
         });
-        let spread = first_of_inverse(&lower, n) * self.squares / weight;
         let slope = coefficients.map(|of| {
             [0, 1, 2].map(|axis| {
                 let term = linear_term(axis, axes).filter(|_| order >= Order::Linear);
@@ -107,33 +110,45 @@ impl<'a> Sums<'a> {
         Some(lower)
     }
 
-    /// Coefficients of `component` by the factor `lower` of `n` rows.
-    fn solved(
-        &self,
-        lower: &[[f64; MOST_TERMS]; MOST_TERMS],
-        n: usize,
-        component: usize,
-    ) -> [f64; MOST_TERMS] {
-        let mut found = [0.0; MOST_TERMS];
-        for row in 0..n {
-            let before: f64 = (0..row).map(|k| lower[row][k] * found[k]).sum();
-            found[row] = (self.moments[component * self.n_terms + row] - before) / lower[row][row];
+    /// Variance of the first of `n` coefficients over that of a sample, and the sum of weights that the fit
+    /// takes from what is left (–), by the factor `lower` of the products.
+    ///
+    /// Of samples that scatter alike by σ, weighted least squares has the covariance σ² A⁻¹ B A⁻¹, with A the
+    /// products of terms by the weights and B those by their squares, and leaves σ² (Σw − tr A⁻¹B).
+    fn spread(&self, lower: &[[f64; MOST_TERMS]; MOST_TERMS], n: usize) -> (f64, f64) {
+        let square = |row: usize, column: usize| {
+            let (row, column) = (row.max(column), row.min(column));
+            self.squares[row * (row + 1) / 2 + column]
+        };
+        let (mut variance, mut trace) = (0.0, 0.0);
+        for column in 0..n {
+            let inverse = solved(lower, n, |term| f64::from(u8::from(term == column)));
+            for row in 0..n {
+                trace += inverse[row] * square(row, column);
+                if column == 0 {
+                    let sum: f64 = (0..n).map(|k| square(row, k) * inverse[k]).sum();
+                    variance += inverse[row] * sum;
+                }
+            }
         }
-        for row in (0..n).rev() {
-            let after: f64 = (row + 1..n).map(|k| lower[k][row] * found[k]).sum();
-            found[row] = (found[row] - after) / lower[row][row];
-        }
-        found
+        (variance, trace)
     }
 }
 
-/// First entry of the inverse of the matrix with the factor `lower` of `n` rows.
-fn first_of_inverse(lower: &[[f64; MOST_TERMS]; MOST_TERMS], n: usize) -> f64 {
-    let mut column = [0.0; MOST_TERMS];
+/// What the matrix with the factor `lower` of `n` rows makes `right` of.
+fn solved(
+    lower: &[[f64; MOST_TERMS]; MOST_TERMS],
+    n: usize,
+    right: impl Fn(usize) -> f64,
+) -> [f64; MOST_TERMS] {
+    let mut found = [0.0; MOST_TERMS];
     for row in 0..n {
-        let unit = f64::from(u8::from(row == 0));
-        let before: f64 = (0..row).map(|k| lower[row][k] * column[k]).sum();
-        column[row] = (unit - before) / lower[row][row];
+        let before: f64 = (0..row).map(|k| lower[row][k] * found[k]).sum();
+        found[row] = (right(row) - before) / lower[row][row];
     }
-    column[..n].iter().map(|value| value * value).sum()
+    for row in (0..n).rev() {
+        let after: f64 = (row + 1..n).map(|k| lower[k][row] * found[k]).sum();
+        found[row] = (found[row] - after) / lower[row][row];
+    }
+    found
 }

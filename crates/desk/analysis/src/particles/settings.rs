@@ -90,11 +90,11 @@ impl BinSettings {
         n_terms(self.order, self.axes)
     }
 
-    /// Sums of a bin (–): the squares of the weights, products of terms, terms times velocity, products of
-    /// velocity.
+    /// Sums of a bin (–): products of terms by the squares of the weights and by the weights, terms times
+    /// velocity, products of velocity.
     pub(super) fn stride(&self) -> usize {
         let n = self.n_terms();
-        1 + n * (n + 1) / 2 + 3 * n + 6
+        n * (n + 1) + 3 * n + 6
     }
 
     /// Samples that `order` needs (–).

@@ -9,8 +9,10 @@ use std::f64::consts::{PI, TAU};
 pub const PEAK_OVER_LENGTH: f64 = 1.120_906_422_778_534;
 /// Radius about the vortex whose points are fitted, over its length (–).
 const REACH: f64 = 2.5;
-/// Fewest points of a fit (–): twice the unknowns, two numbers each.
-const FEWEST: usize = 9;
+/// Fewest points of a fit (–), of two numbers each: about twice the unknowns.
+const FEWEST: usize = 10;
+/// Unknowns that are solved for: circulation, drift, two rates of strain, a jet.
+const N_LINEAR: usize = 7;
 /// Steps of a fit at most, and how little it must move to be done (lengths).
 const MOST_STEPS: usize = 60;
 const DONE: f64 = 1e-9;
@@ -24,7 +26,7 @@ pub struct Vortex {
     pub circulation: f64,
     /// Radius of its greatest speed (m).
     pub core_radius: f64,
-    /// Velocity of the air about it, without its own, at its middle (m/s).
+    /// Velocity of the air about it, without its own and without what flows along it, at its middle (m/s).
     pub drift: [f64; 2],
     /// Root mean square of what the fit leaves, over the greatest speed of the vortex (–).
     pub misfit: f64,
@@ -50,7 +52,7 @@ struct Guess {
     length: f64,
 }
 
-/// The best linear unknowns for a guess: circulation, drift, two rates of strain; and what is left.
+/// The best linear unknowns for a guess: circulation, drift, two rates of strain, a jet; and what is left.
 struct Linear {
     circulation: f64,
     drift: [f64; 2],
@@ -59,9 +61,9 @@ struct Linear {
 
 /// The vortex next to `start` (m), whose length of the exponent is about `length` (m), in `section`.
 ///
-/// Fitted is a Lamb-Oseen vortex, which is also what turns in a Batchelor vortex, in uniform air that is
-/// strained: least squares of both velocities at all points within 2.5 lengths, Levenberg and Marquardt for
-/// place and length, the rest solved for. None where fewer than nine points are there, where the fit does not
+/// Fitted is a Lamb-Oseen vortex in uniform air that is strained, with a jet as wide as its core: what of a
+/// Batchelor vortex's axial velocity shows in a plane that stands askew to it. Least squares of both velocities at all points within 2.5 lengths, Levenberg and Marquardt for
+/// place and length, the rest solved for. None where fewer than ten points are there, where the fit does not
 /// settle, or ends more than three lengths from where it began.
 ///
 /// Source of the profile: Lamb, "Hydrodynamics", 1932, §334a; Batchelor (1964), J. Fluid Mech. 20.
@@ -174,8 +176,8 @@ fn derivatives(
 
 /// The linear unknowns of `guess` with the least squares.
 fn solve(section: &Section, points: &[usize], guess: Guess) -> Option<Linear> {
-    let mut normal = [[0.0; 5]; 5];
-    let mut right = [0.0; 5];
+    let mut normal = [[0.0; N_LINEAR]; N_LINEAR];
+    let mut right = [0.0; N_LINEAR];
     let rows = |index: usize| {
         let at = section.position(index);
         let [x, y] = [0, 1].map(|axis| (at[axis] - guess.place[axis]) / guess.length);
@@ -183,21 +185,22 @@ fn solve(section: &Section, points: &[usize], guess: Guess) -> Option<Linear> {
         // (1 − e^{−s²})/s², which is 1 − s²/2 near the middle.
         let share = if square < 1e-8 { 1.0 - 0.5 * square } else { -(-square).exp_m1() / square };
         let turn = share / (TAU * guess.length);
+        let jet = (-square).exp();
         [
-            ([-y * turn, 1.0, 0.0, x, y], section.velocity[0][index]),
-            ([x * turn, 0.0, 1.0, -y, x], section.velocity[1][index]),
+            ([-y * turn, 1.0, 0.0, x, y, jet, 0.0], section.velocity[0][index]),
+            ([x * turn, 0.0, 1.0, -y, x, 0.0, jet], section.velocity[1][index]),
         ]
     };
     for (row, value) in points.iter().flat_map(|index| rows(*index)) {
-        for i in 0..5 {
+        for i in 0..N_LINEAR {
             right[i] += row[i] * value;
-            for j in 0..5 {
+            for j in 0..N_LINEAR {
                 normal[i][j] += row[i] * row[j];
             }
         }
     }
     let found = solved(normal, right)?;
-    let left = |(row, value): ([f64; 5], f64)| {
+    let left = |(row, value): ([f64; N_LINEAR], f64)| {
         value - row.iter().zip(&found).map(|(a, b)| a * b).sum::<f64>()
     };
     let residuals = points.iter().flat_map(|index| rows(*index)).map(left).collect();
