@@ -34,7 +34,8 @@ const MEBIBYTES: usize = 512;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let quick = arguments.iter().any(|argument| argument == "quick");
-    let n_instants = arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(8).max(2);
+    let n_instants =
+        arguments.iter().find_map(|argument| argument.parse().ok()).unwrap_or(8).max(2);
     let side = if quick { 316 } else { 3163 };
     let path = std::env::temp_dir().join(format!("wakemix-bench-{}.nc", std::process::id()));
     write(&path, side, n_instants);

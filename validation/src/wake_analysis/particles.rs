@@ -45,11 +45,9 @@ fn all_particles(random: &mut Random) -> Vec<Particle> {
 
 pub(super) fn rows(random: &mut Random) -> Vec<Row> {
     let all = all_particles(random);
-    let (found, [n_false, n_sound]) = binned(&all, Order::Linear);
+    let (found, [refused, mistaken]) = binned(&all, Order::Linear);
     let errors = Errors::of(&found);
     let curved = Errors::of(&binned(&all, Order::Quadratic).0);
-    let share = |n: usize, of: usize| 100.0 * n as f64 / of as f64;
-    let (refused, mistaken) = (share(n_false, N / FALSE), share(n_sound, N - N / FALSE));
     let mut rows = vec![
         row("error of the mean over 5 m/s, root mean square", errors.mean, 1.0, AtMost, "%"),
         row("that error over what is promised", errors.over_promise, 1.0, Within(0.25), "–"),
@@ -62,8 +60,9 @@ pub(super) fn rows(random: &mut Random) -> Vec<Row> {
     rows
 }
 
-/// `all` particles in cells, outliers left out; and how many false and sound ones were taken for such.
-fn binned(all: &[Particle], order: Order) -> (Binned, [usize; 2]) {
+/// `all` particles in cells, outliers left out; and the shares of false and sound ones that were taken for such
+/// (%).
+fn binned(all: &[Particle], order: Order) -> (Binned, [f64; 2]) {
     let bounds = [[0.05, 0.35], [-0.12, 0.12], [-0.02, 0.02]];
     let settings = BinSettings::over(bounds, [0.01; 3], 0.75, order, 1 << 30).expect("sound cells");
     let settings = BinSettings { fewest: 10, ..settings };
@@ -72,15 +71,28 @@ fn binned(all: &[Particle], order: Order) -> (Binned, [usize; 2]) {
     all.iter().for_each(|particle| screen.look(particle));
     let screened = screen.screened();
     let mut binner = Binner::new(settings);
-    let mut refused = [0, 0];
+    // Of those in the cells: no others are judged.
+    let (mut n_refused, mut n_all) = ([0.0; 2], [0.0; 2]);
+    let is_in_cells = |particle: &Particle| {
+        (0..3).all(|axis| {
+            let (grid, half) = (&settings.grid, 0.5 * settings.size[axis]);
+            let from = particle.position[axis] - grid.origin[axis];
+            let length = grid.spacing[axis] * (grid.n_points[axis] - 1) as f64;
+            (-half..length + half).contains(&from)
+        })
+    };
     for (index, particle) in all.iter().enumerate() {
-        if screened.is_outlier(particle) {
-            refused[usize::from(index % FALSE != 0)] += 1;
-        } else {
+        let kind = usize::from(index % FALSE != 0);
+        let is_outlier = screened.is_outlier(particle);
+        if is_in_cells(particle) {
+            n_all[kind] += 1.0;
+            n_refused[kind] += f64::from(u8::from(is_outlier));
+        }
+        if !is_outlier {
             binner.add(particle);
         }
     }
-    (binner.binned(), refused)
+    (binner.binned(), [0, 1].map(|kind| 100.0 * n_refused[kind] / n_all[kind]))
 }
 
 /// How far cells are off, over all cells and components.

@@ -62,6 +62,12 @@ fn an_analysis_of_ones_own_answers_beside_the_others() {
         "lock",
         "meandering",
         "hub-vortex",
+        "phases",
+        "entrainment",
+        "budget",
+        "vortices",
+        "modes",
+        "particles",
         "energy",
     ];
     assert_eq!(names, expected);

@@ -24,11 +24,11 @@ pub use figures::synchronisation::{
     SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
-pub use units::are_of_models;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+pub use units::are_of_models;
 
 /// Files written by this process so far (–).
 static N_WRITTEN: AtomicU64 = AtomicU64::new(0);

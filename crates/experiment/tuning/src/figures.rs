@@ -150,6 +150,7 @@ fn map(tuned: &Tuned) -> Result<MapFigure, TuningError> {
     };
     let variables = &tuned.file.variables;
     Ok(MapFigure {
+        has_lines: true,
         name: "maps".to_owned(),
         title: "Gain over both variables".to_owned(),
         caption: "Share of the baseline's array power that each turbine and the array gain, means of the Gaussian processes; crosses: runs; dashed: the optimum."

@@ -8,6 +8,10 @@ use basis::records::STRESSES;
 /// do not tell the terms apart.
 const APART: f64 = 1e-6;
 
+/// Share of the samples' scatter that a polynomial must leave (–), so that what is left tells how far they
+/// scatter: one that goes through them all tells nothing.
+const LEAST_FREE: f64 = 0.25;
+
 /// The sums of one bin, as [`BinSettings::stride`] lays them out.
 pub(super) struct Sums<'a> {
     /// Lower triangle of the products of terms by the squares of the weights, row by row: what scatters alike
@@ -62,7 +66,11 @@ impl<'a> Sums<'a> {
             solved(&lower, n, |term| self.moments[component * self.n_terms + term])
         });
         let (spread, taken) = self.spread(&lower, n);
-        let free = (1.0 - taken / weight).max(f64::EPSILON);
+        let free = 1.0 - taken / weight;
+        if order > Order::Constant && free < LEAST_FREE {
+            return None;
+        }
+        let free = free.max(f64::EPSILON);
         let moment = |component: usize, term: usize| self.moments[component * self.n_terms + term];
         let stress = std::array::from_fn(|place| {
             let [first, second] = STRESSES[place];

@@ -45,6 +45,12 @@ struct BoxRow {
     budget: Budget,
 }
 
+impl BoxRow {
+    fn holds_rotor(&self) -> bool {
+        self.span[0] <= 0.0 && self.span[1] >= 0.0
+    }
+}
+
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let found = Averaged::of(request)?;
     let length = settings::positive(request, &LENGTH, 0.5)? * found.setting.diameter;
@@ -56,6 +62,12 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let (rows, n_holed) = boxes(&found, length, side)?;
     let mut remarks = found.remarks.clone();
     remarks.push("pressure is not on record: its work is in the residual, with that of viscous and subgrid stresses".to_owned());
+    if let Some(row) = rows.iter().find(|row| row.holds_rotor()) {
+        let [from, to] = row.span.map(|x| x / found.setting.diameter);
+        remarks.push(format!(
+            "the box from {from:.2} to {to:.2} D holds the rotor: what the rotor takes is in its residual"
+        ));
+    }
     if n_holed > 0 {
         remarks.push(format!("{n_holed} boxes have holes, and no budget"));
     }
@@ -151,12 +163,14 @@ fn json(found: &Averaged, rows: &[BoxRow]) -> serde_json::Value {
 }
 
 fn signals(found: &Averaged, rows: &[BoxRow]) -> Signals {
-    let middle = |row: &BoxRow| 0.5 * (row.span[0] + row.span[1]) / found.setting.diameter;
+    // The work of the rotor and of the pressure about it would dwarf what happens in the wake.
+    let behind: Vec<&BoxRow> = rows.iter().filter(|row| row.span[0] > 0.0).collect();
+    let middle = |row: &&BoxRow| 0.5 * (row.span[0] + row.span[1]) / found.setting.diameter;
     let line = |(colour, (name, part)): (usize, &(&str, fn(&Budget) -> f64))| TrackLine {
         name: (*name).to_owned(),
         colour: colour + 1,
-        times: rows.iter().map(middle).collect(),
-        values: rows.iter().map(|row| part(&row.budget) / scale(found)).collect(),
+        times: behind.iter().map(middle).collect(),
+        values: behind.iter().map(|row| part(&row.budget) / scale(found)).collect(),
         band: Vec::new(),
     };
     let row = TrackRow {
@@ -168,9 +182,14 @@ fn signals(found: &Averaged, rows: &[BoxRow]) -> Signals {
         along: Along { label: "x/D", unit: "D" },
         name: "budget-over-distance".to_owned(),
         title: "Budget of mean kinetic energy".to_owned(),
-        caption: format!("Box by box. {}; {}.", conditions(&found.setting), found.samples()),
+        caption: format!(
+            "Box by box behind the rotor. {}; {}.",
+            conditions(&found.setting),
+            found.samples()
+        ),
         rows: vec![row],
         mark: None,
     };
-    Signals { title: "Budget".to_owned(), tracks: vec![tracks], ..Signals::default() }
+    let tracks = if behind.len() > 1 { vec![tracks] } else { Vec::new() };
+    Signals { title: "Budget".to_owned(), tracks, ..Signals::default() }
 }

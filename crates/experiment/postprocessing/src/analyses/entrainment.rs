@@ -45,6 +45,10 @@ const SMOOTHING: AnalysisSetting = settings::setting(
 /// Share of the free stream at which a wake ends (–).
 const EDGE: f64 = 0.95;
 
+/// In what fluxes are drawn, and its name: of U³ they are thousandths.
+const THOUSANDTH: f64 = 1e-3;
+const UNIT: &str = "10⁻³ U³";
+
 /// What crosses one line, or a tube.
 struct Through {
     name: &'static str,
@@ -271,7 +275,7 @@ fn signals(
         along: Along { label: "x/D", unit: "D" },
         name: "entrainment-over-distance".to_owned(),
         title: "Energy that enters the wake".to_owned(),
-        caption: format!("Positive: into the wake. {caption}"),
+        caption: format!("Flux through lines or tube, positive into the wake. {caption}"),
         rows,
         mark: None,
     };
@@ -282,18 +286,18 @@ fn signals(
 
 /// What crosses one line or tube, over the distance.
 fn flux_row(found: &Averaged, one: &Through) -> TrackRow {
-    let cube = found.setting.wind_speed.powi(3);
+    let scale = THOUSANDTH * found.setting.wind_speed.powi(3);
     let line = |(colour, (name, part)): (usize, (&str, fn(&FluxPoint) -> f64))| TrackLine {
         name: name.to_owned(),
         colour: colour + 1,
         times: distances(found, one.points.iter().map(|point| point.x - found.setting.hub[0])),
-        values: one.points.iter().map(|point| part(point) / cube).collect(),
+        values: one.points.iter().map(|point| part(point) / scale).collect(),
         band: Vec::new(),
     };
     let kinds: [(&str, fn(&FluxPoint) -> f64); 3] =
         [("all", |p| p.total), ("periodic", |p| p.periodic), ("random", |p| p.random)];
     TrackRow {
-        label: format!("flux, {} (U³)", one.name),
+        label: format!("{} ({UNIT})", one.name),
         is_angle: false,
         lines: kinds.into_iter().enumerate().map(line).collect(),
     }
@@ -318,20 +322,21 @@ fn flux_map(found: &Averaged, parts: &Decomposition, caption: &str) -> MapFigure
     let axis = if grid.n_points[2] > 1 { 2 } else { 1 };
     let stress = stress_of(0, axis);
     let field = |values: &[f64]| -> Vec<f64> {
-        let cube = found.setting.wind_speed.powi(3);
-        values.iter().zip(&parts.mean[0]).map(|(s, u)| -s * u / cube).collect()
+        let scale = THOUSANDTH * found.setting.wind_speed.powi(3);
+        values.iter().zip(&parts.mean[0]).map(|(s, u)| -s * u / scale).collect()
     };
     let panels = [("all", &parts.total[stress]), ("random", &parts.random[stress])];
     MapFigure {
+        has_lines: false,
         name: "entrainment-flux".to_owned(),
         title: "Flux of mean kinetic energy".to_owned(),
         caption: format!(
-            "−⟨u'{0}'⟩ū over U³: positive towards lower {1}. {caption}",
+            "−⟨u'{0}'⟩ū: positive towards lower {1}. {caption}",
             ["u", "v", "w"][axis],
             ["x", "y", "z"][axis]
         ),
         along: axes(grid),
-        unit: "U³".to_owned(),
+        unit: UNIT.to_owned(),
         panels: panels
             .iter()
             .filter_map(|(name, v)| panel(grid, &found.setting, *name, &field(v)))

@@ -118,6 +118,12 @@ fn bins(request: &Request) -> Result<BinSettings, PostprocessingError> {
         Some(text) => six(text)?,
         None => extent(request.run(), settings::lengths(request))?,
     };
+    let longest = bounds.iter().map(|[from, to]| to - from).fold(0.0, f64::max);
+    if size > longest {
+        let problem = format!("has particles over {longest:.3} m, less than a cell of {size} m");
+        let fix = "give --cell and --bounds in metres, such as --cell 0.04";
+        return Err(refused(request.run(), problem, fix));
+    }
     let order = match request.text(ORDER.name) {
         Some("constant") => Order::Constant,
         Some("quadratic") => Order::Quadratic,

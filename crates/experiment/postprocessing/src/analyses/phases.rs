@@ -85,7 +85,7 @@ fn summed(found: &Averaged, parts: &Decomposition) -> [[f64; 3]; 3] {
 /// averages were made before.
 fn widths(request: &Request, found: &Averaged) -> Result<Vec<WidthRow>, PostprocessingError> {
     let Some(width) = found.head.helix_width else { return Ok(Vec::new()) };
-    if found.rates.is_none() {
+    if !found.is_made_now() {
         return Ok(Vec::new());
     }
     let mut instants = Fields::instants(request)?;
@@ -243,6 +243,7 @@ fn signals(found: &Averaged, parts: &Decomposition) -> Signals {
         .filter_map(|(title, values)| panel(found.grid(), &found.setting, *title, &over(values)))
         .collect();
     let map = MapFigure {
+        has_lines: false,
         name: "phases-stress-uu".to_owned(),
         title: "Fluctuations along the wind".to_owned(),
         caption: format!(

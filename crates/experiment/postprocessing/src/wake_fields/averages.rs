@@ -1,10 +1,11 @@
 //! Averages by phase: those that were kept, or made of instants.
 
-use super::settings::{self, BINS, CYCLES, WIDTH};
+use super::settings::{self, BINS, CYCLES, FIELD, TURBINE, WIDTH};
 use super::source::Instants;
 use super::{Angles, Fields, refused};
 use crate::PostprocessingError;
 use crate::analyses::Request;
+use crate::phase::query::folder_of;
 use analysis::phases::{Bins, Decomposer, Decomposition, PhaseAverager, PhaseError};
 use basis::Sense;
 use basis::records::{FieldSetting, Grid, Moments, PhaseAverages};
@@ -41,16 +42,37 @@ impl Averaged {
     /// [`PostprocessingError`].
     pub(crate) fn of(request: &Request) -> Result<Self, PostprocessingError> {
         match Fields::open(request, true)? {
-            Fields::Averages(stored) => Ok(Self {
-                path: request.run().to_owned(),
-                setting: stored.setting.clone(),
-                head: stored.head.clone(),
-                remarks: empty_bins(&stored.head),
-                rates: None,
-                moments: Made::Stored(stored),
-            }),
+            Fields::Averages(stored, file) => Self::kept(request, *stored, file),
             Fields::Instants(instants) => Self::made(request, *instants),
         }
+    }
+
+    /// Those that lie in `file`; a run's series tells how fast rotor and helix turned.
+    fn kept(
+        request: &Request,
+        stored: StoredPhaseAverages,
+        file: PathBuf,
+    ) -> Result<Self, PostprocessingError> {
+        let is_of_run = file != request.run();
+        let rates = match is_of_run {
+            true => Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name))?
+                .rates(stored.head.span),
+            false => None,
+        };
+        let mut remarks = empty_bins(&stored.head);
+        if is_of_run && request.text(FIELD.name).is_none() {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            remarks.push(format!("averages of {name}; --field names other planes of the run"));
+        }
+        let (setting, head) = (stored.setting.clone(), stored.head.clone());
+        Ok(Self {
+            path: file,
+            setting,
+            head,
+            remarks,
+            rates,
+            moments: Made::Stored(Box::new(stored)),
+        })
     }
 
     fn made(request: &Request, mut instants: Instants) -> Result<Self, PostprocessingError> {
@@ -105,6 +127,11 @@ impl Averaged {
         remarks.extend(empty_bins(&head));
         let setting = instants.setting;
         Ok(Self { path, setting, head, remarks, rates, moments: Made::Now(Box::new(averager)) })
+    }
+
+    /// Whether they were made of instants now.
+    pub(crate) fn is_made_now(&self) -> bool {
+        matches!(self.moments, Made::Now(_))
     }
 
     /// The points.

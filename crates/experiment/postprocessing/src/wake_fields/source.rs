@@ -7,7 +7,7 @@ use crate::analyses::Request;
 use crate::phase::query::folder_of;
 use basis::records::{Field, FieldSetting};
 use formats::fields::FieldFile;
-use formats::records::{StoredPhaseAverages, is_phase_averages};
+use formats::records::{RunFolder, StoredPhaseAverages, is_phase_averages};
 use std::path::{Path, PathBuf};
 
 /// Planes that are looked for first, in this order.
@@ -15,8 +15,8 @@ const FIRST: [&str; 2] = ["streamwise", "hub-height"];
 
 /// Fields of a wake.
 pub(crate) enum Fields {
-    /// Averages by phase, made before.
-    Averages(Box<StoredPhaseAverages>),
+    /// Averages by phase, made before, and the file that they lie in.
+    Averages(Box<StoredPhaseAverages>, PathBuf),
     /// Instants.
     Instants(Box<Instants>),
 }
@@ -47,7 +47,8 @@ impl Fields {
                 let fix = "name the file of the instants, or a run that kept them (output.plane_interval)";
                 return Err(refused(&file, "holds averages, where instants are needed", fix));
             }
-            return Ok(Self::Averages(Box::new(StoredPhaseAverages::open(&file)?)));
+            let stored = Box::new(StoredPhaseAverages::open(&file)?);
+            return Ok(Self::Averages(stored, file));
         }
         let opened = FieldFile::open(&file, settings::lengths(request))?;
         let opened = opened.with_zeros(settings::zeros(request));
@@ -91,7 +92,7 @@ impl Fields {
     pub(crate) fn instants(request: &Request) -> Result<Instants, PostprocessingError> {
         match Self::open(request, false)? {
             Self::Instants(instants) => Ok(*instants),
-            Self::Averages(_) => Err(refused(
+            Self::Averages(..) => Err(refused(
                 request.run(),
                 "holds averages, where instants are needed",
                 "name the file of the instants",
@@ -155,7 +156,7 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
         let problem = format!("keeps no instants of a plane called `{name}`");
         return Err(refused(path, problem, NO_INSTANTS));
     }
-    if averages && let Some(kept) = folder.phase_averages_paths()?.into_iter().next() {
+    if averages && let Some(kept) = kept_averages(&folder)? {
         return Ok(kept);
     }
     let named = FIRST.into_iter().map(|name| folder.instants_path(name)).find(|one| one.is_file());
@@ -163,6 +164,19 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
         Some(file) => Ok(file),
         None => Err(refused(path, "keeps neither planes at instants nor averages", NO_INSTANTS)),
     }
+}
+
+/// The averages by phase that the run in `folder` kept: of those the first that reaches along the wind, as most
+/// analyses need it, or else the first.
+fn kept_averages(folder: &RunFolder) -> Result<Option<PathBuf>, PostprocessingError> {
+    let mut first = None;
+    for path in folder.phase_averages_paths()? {
+        if StoredPhaseAverages::open(&path)?.head.grid.n_points[0] > 1 {
+            return Ok(Some(path));
+        }
+        first.get_or_insert(path);
+    }
+    Ok(first)
 }
 
 /// That a file tells no times, and what to do.

@@ -93,6 +93,7 @@ fn by_energy(answer: &Found, component: usize) -> Option<MapFigure> {
 
 fn figure(answer: &Found, name: &str, title: String, panels: Vec<MapPanel>) -> Option<MapFigure> {
     (!panels.is_empty()).then(|| MapFigure {
+        has_lines: false,
         name: name.to_owned(),
         title,
         caption: format!(

@@ -25,6 +25,7 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
         panels.push(panel);
     }
     let map = MapFigure {
+        has_lines: false,
         name: "vortices-by-phase".to_owned(),
         title: "Vortices by phase".to_owned(),
         caption: format!(

@@ -32,6 +32,8 @@ pub struct MapFigure {
     pub along: [String; 2],
     /// Unit of the quantity.
     pub unit: String,
+    /// Whether lines of equal value are drawn, with their values: those of a noisy quantity would hide it.
+    pub has_lines: bool,
     /// The panels.
     pub panels: Vec<MapPanel>,
 }
@@ -63,7 +65,10 @@ pub(super) fn maps(figure: &MapFigure) -> Option<Figure> {
     let values = figure.panels.iter().flat_map(|panel| &panel.values);
     let most = values.map(|value| value.abs()).fold(0.0, f64::max);
     let range = if most > 0.0 { [-most, most] } else { [-1.0, 1.0] };
-    let (levels, decimals) = Scale::linear(range[0], range[1]).ticks(2 * N_LEVELS);
+    let (mut levels, decimals) = Scale::linear(range[0], range[1]).ticks(2 * N_LEVELS);
+    if !figure.has_lines {
+        levels.clear();
+    }
     let n_columns = figure.panels.len().min(MOST);
     let width = (WIDTH - LEFT - RIGHT - GAP[0] * (n_columns - 1) as f64) / n_columns as f64;
     let mut shapes = Vec::new();
@@ -263,6 +268,7 @@ mod tests {
         assert!((panel.at([0.5, -0.25]) - 0.3125).abs() < 1e-12);
         assert!((panel.at([2.0, 2.0]) - 2.0).abs() < 1e-12);
         let figure = |panel| MapFigure {
+            has_lines: true,
             name: "map".into(),
             title: String::new(),
             caption: String::new(),
