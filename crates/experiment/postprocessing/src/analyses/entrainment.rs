@@ -47,7 +47,7 @@ const EDGE: f64 = 0.95;
 
 /// In what fluxes are drawn, and its name: of U³ they are thousandths.
 const THOUSANDTH: f64 = 1e-3;
-const UNIT: &str = "10⁻³ U³";
+const UNIT: &str = "0.001 U³";
 
 /// What crosses one line, or a tube.
 struct Through {
