@@ -12,8 +12,14 @@ const GAP: f64 = 16.0;
 const LEFT: f64 = 74.0;
 /// Decades below the highest value that are shown at most.
 const DECADES: f64 = 6.0;
-/// Millihertz of a hertz.
-const MILLI: f64 = 1e3;
+/// Highest frequency that is still drawn in millihertz (Hz): those of wakes and towers are, those of models in
+/// tunnels are not.
+const HIGHEST_IN_MILLI: f64 = 5.0;
+
+/// The unit of frequency of a figure: how many a hertz has, and its name.
+fn unit(figure: &DensityFigure) -> (f64, &'static str) {
+    if figure.highest_frequency > HIGHEST_IN_MILLI { (1.0, "Hz") } else { (1e3, "mHz") }
+}
 
 /// A pair of axes for each row, over frequencies up to the highest.
 pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
@@ -21,6 +27,7 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
     if rows.is_empty() {
         return None;
     }
+    let (each, unit) = unit(figure);
     let mut shapes = Vec::new();
     let lines = rows.iter().flat_map(|drawn| &drawn.row.lines);
     let names = names(lines.map(|line| (line.colour, line.name.as_str())));
@@ -34,7 +41,7 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
             y: drawn.scale,
         };
         if let Some([low, high]) = figure.band {
-            let ends = [[MILLI * low, frame.y.low], [MILLI * high, frame.y.high]];
+            let ends = [[each * low, frame.y.low], [each * high, frame.y.high]];
             let band = frame.rectangle(ends[0], ends[1]);
             shapes.push(frame.behind(vec![rectangle(band, Look::fill(Ink::Band))]));
         }
@@ -42,17 +49,17 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
         frame.columns(9, last, &mut shapes);
         frame.y_label(&drawn.row.label, 56.0, &mut shapes);
         if last {
-            frame.x_label("frequency (mHz)", &mut shapes);
+            frame.x_label(&format!("frequency ({unit})"), &mut shapes);
         }
         let mut inner: Vec<Shape> = Vec::new();
         for (frequency, name) in &figure.marks {
             let name = if index == 0 { name.as_str() } else { "" };
-            upright(&frame, MILLI * frequency, name, &mut inner);
+            upright(&frame, each * frequency, name, &mut inner);
         }
         inner.extend(drawn.row.lines.iter().zip(&drawn.points).map(|(line, points)| {
             named(&line.name, vec![frame.line(points, case_line(line.colour, 1.8))])
         }));
-        shapes.push(frame.panel(inner, ["mHz", ""]));
+        shapes.push(frame.panel(inner, [unit, ""]));
     }
     Some(Figure {
         name: figure.name.clone(),
@@ -64,11 +71,12 @@ pub(super) fn densities(figure: &DensityFigure) -> Option<Figure> {
     })
 }
 
-/// The axis of frequencies (mHz).
+/// The axis of frequencies, in the figure's unit.
 fn frequencies(figure: &DensityFigure) -> Scale {
+    let (each, _) = unit(figure);
     Scale {
-        low: MILLI * figure.lowest_frequency.unwrap_or(0.0),
-        high: MILLI * figure.highest_frequency,
+        low: each * figure.lowest_frequency.unwrap_or(0.0),
+        high: each * figure.highest_frequency,
         logarithmic: figure.lowest_frequency.is_some(),
     }
 }
@@ -83,6 +91,7 @@ struct Drawn<'a> {
 impl<'a> Drawn<'a> {
     /// Nothing where no line has a value above zero.
     fn new(figure: &DensityFigure, row: &'a DensityRow) -> Option<Self> {
+        let (each, _) = unit(figure);
         let points: Vec<Vec<[f64; 2]>> = row
             .lines
             .iter()
@@ -93,7 +102,7 @@ impl<'a> Drawn<'a> {
                 let shown = points.skip(1).filter(|[frequency, value]| {
                     *frequency <= figure.highest_frequency && value.is_finite() && *value > 0.0
                 });
-                shown.map(|[frequency, value]| [MILLI * frequency, value]).collect()
+                shown.map(|[frequency, value]| [each * frequency, value]).collect()
             })
             .collect();
         let values = || points.iter().flatten().map(|point| point[1]);
