@@ -178,6 +178,15 @@ fn powers(summaries: &[Summary]) -> Vec<Row> {
             unit: "%",
             source: TUNNEL,
         });
+        let interval = summary.and_then(|s| s.array_power_gain).and_then(|gain| gain.half_width_95);
+        rows.push(Row {
+            what: format!("half of the 95 % interval of that gain, {run}"),
+            measured: percent(interval),
+            expected: GAIN_TOLERANCE,
+            tolerance: AtMost,
+            unit: "%",
+            source: CASE_ITSELF,
+        });
         let of = |turbine: usize| summary.and_then(|s| s.turbines[turbine].power_gain);
         rows.push(Row {
             what: format!("change of T1, {conditions}"),

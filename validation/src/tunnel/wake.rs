@@ -4,9 +4,7 @@ use super::TUNNEL;
 use crate::Row;
 use crate::row::Tolerance::{AtLeast, Within};
 use crate::studies::failure;
-use analysis::entrainment::{
-    Edge, FluxPoint, available_power, flux_along, integral, sign_flip,
-};
+use analysis::entrainment::{Edge, FluxPoint, available_power, flux_along, integral, sign_flip};
 use analysis::grids::widened;
 use analysis::phases::Decomposer;
 use basis::records::Moments;
@@ -41,7 +39,8 @@ struct Wake {
 impl Wake {
     fn read(run: &RunFolder) -> Result<Self, String> {
         let open = |name: &str| {
-            StoredPhaseAverages::open(&run.phase_averages_path(name)).map_err(|error| error.to_string())
+            StoredPhaseAverages::open(&run.phase_averages_path(name))
+                .map_err(|error| error.to_string())
         };
         let disc = |distance: &f64| of_disc(&open(&format!("discs-{distance}D"))?);
         let power = DISCS.iter().map(disc).collect::<Result<_, String>>()?;
@@ -63,7 +62,8 @@ fn bin_of(plane: &StoredPhaseAverages, index: usize) -> Result<Moments, String> 
 /// Mean and twice the deviation over the phases of the fraction of available power on a plane (–).
 fn of_disc(plane: &StoredPhaseAverages) -> Result<[f64; 2], String> {
     let (grid, setting) = (&plane.head.grid, &plane.setting);
-    let (place, radius) = ((grid.origin[0], [setting.hub[1], setting.hub[2]]), 0.5 * setting.diameter);
+    let (place, radius) =
+        ((grid.origin[0], [setting.hub[1], setting.hub[2]]), 0.5 * setting.diameter);
     let mut fractions = Vec::new();
     let bins = plane.head.bins.iter().enumerate().filter(|(_, bin)| bin.n_instants > 0);
     for (index, _) in bins {
