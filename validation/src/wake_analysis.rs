@@ -1,5 +1,5 @@
-//! Analyses of wakes on fields whose answers are known: phases, vortices, particles, fluxes, modes; the budget
-//! of a wake on the lattice.
+//! Analyses of wakes on fields whose answers are known: phases, vortices, particles, fluxes, modes; the
+//! budget of a wake on the lattice.
 
 mod fields;
 mod lattice;

@@ -60,8 +60,8 @@ pub(super) fn rows(random: &mut Random) -> Vec<Row> {
     rows
 }
 
-/// `all` particles in cells, outliers left out; and the shares of false and sound ones that were taken for such
-/// (%).
+/// `all` particles in cells, outliers left out; and the shares of false and sound ones that were taken for
+/// such (%).
 fn binned(all: &[Particle], order: Order) -> (Binned, [f64; 2]) {
     let bounds = [[0.05, 0.35], [-0.12, 0.12], [-0.02, 0.02]];
     let settings = BinSettings::over(bounds, [0.01; 3], 0.75, order, 1 << 30).expect("sound cells");

@@ -13,7 +13,7 @@ const TETRAHEDRA: [[usize; 4]; 6] =
 pub struct Isosurface {
     /// Corners (m).
     pub points: Vec<[f64; 3]>,
-    /// Corners of each triangle by their numbers; seen from where the field is less they go counter-clockwise.
+    /// Corners of each triangle by their numbers; counter-clockwise as seen from where the field is less.
     pub triangles: Vec<[u32; 3]>,
     /// Of each corner the two points of the grid between which it lies, and how far from the first (–).
     between: Vec<([usize; 2], f64)>,

@@ -1,4 +1,4 @@
-//! In what a reader is told powers and thrusts: megawatts and kilonewtons, watts and newtons of tunnel models.
+//! In what a reader is told powers and thrusts: megawatts, kilonewtons; watts, newtons of tunnel models.
 
 use basis::records::Summary;
 

@@ -34,9 +34,9 @@ pub struct Budget {
     pub turbulent_flux: f64,
     /// Handed over to fluctuations, a loss where it is negative: ∫ ⟨uᵢ'uⱼ'⟩ ∂ūᵢ/∂xⱼ dV.
     pub production: f64,
-    /// The flux by stresses through the faces along the wind, that is without those across it.
+    /// The flux by stresses through the faces along the wind, that is without those across it (m⁵/s³).
     pub through_sides: f64,
-    /// Sizes of all parts of the flux, added: what a residual is measured by.
+    /// Sizes of all parts of the flux, added: what a residual is measured by (m⁵/s³).
     pub scale: f64,
     /// Volume (m³).
     pub volume: f64,

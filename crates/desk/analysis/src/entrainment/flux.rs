@@ -15,7 +15,7 @@ pub struct Edge {
     pub axis: usize,
     /// Where it is: y and z (m, farm frame).
     pub place: [f64; 2],
-    /// Which way along `axis` leads into the wake: 1 or −1.
+    /// Which way along `axis` leads into the wake: 1 or −1 (–).
     pub inward: f64,
 }
 
@@ -26,9 +26,9 @@ pub struct FluxPoint {
     pub x: f64,
     /// Into the wake by all fluctuations, −⟨u'v'⟩ū with v inward (m³/s³).
     pub total: f64,
-    /// By the periodic ones.
+    /// By the periodic ones (m³/s³).
     pub periodic: f64,
-    /// By the random ones.
+    /// By the random ones (m³/s³).
     pub random: f64,
 }
 
@@ -105,7 +105,7 @@ pub fn sign_flip(points: &[FluxPoint], length: f64) -> Option<f64> {
         let share = pair[0].1 / (pair[0].1 - pair[1].1);
         pair[0].0 + share * (pair[1].0 - pair[0].0)
     };
-    flips.map(place).last()
+    flips.map(place).next_back()
 }
 
 /// Distance from `place` along `axis` (1 or 2, towards `way` 1 or −1) at which the mean speed `mean` at `x`

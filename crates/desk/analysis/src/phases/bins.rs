@@ -30,7 +30,7 @@ struct Windows {
 }
 
 /// Azimuth of the helix (rad, (−π, π]): the angle of the rotor's moment, or of the pitch that makes it, from
-/// its yaw towards its `tilt` component (one unit). It grows with time in a ccw helix and shrinks in a cw one.
+/// its yaw towards its `tilt` component (one unit). It grows in a ccw helix and shrinks in a cw one.
 ///
 /// Source: van der Hoek et al. (2024), Eq. 6, in all four quadrants.
 pub fn helix_azimuth(tilt: f64, yaw: f64) -> f64 {
@@ -66,8 +66,8 @@ impl Bins {
         Ok(Self { n_azimuths, n_revolutions: 1, helix: None })
     }
 
-    /// Bins of `n_azimuths` a revolution over `n_cycles` of a helix of `sense`, a cycle of which takes `ratio`
-    /// revolutions, each with a window of helix azimuth `width` (rad) wide.
+    /// Bins of `n_azimuths` a revolution over `n_cycles` of a helix of `sense`, each of which takes `ratio`
+    /// revolutions; windows of helix azimuth are `width` (rad) wide.
     ///
     /// Their number is the whole number nearest to `ratio` × `n_cycles`, times `n_azimuths`.
     /// Source: van der Hoek et al. (2024), §3.2: 168 and 204 bins of 12 azimuths over 3 cycles.

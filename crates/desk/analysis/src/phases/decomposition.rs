@@ -79,8 +79,8 @@ impl Decomposer {
 
     /// The decomposition.
     ///
-    /// Random stresses are means over the bins (Eqs. 9 and 10 of van der Hoek et al., 2024), each with n − 1 in
-    /// the place of n; the random part that bins of n samples leave in their means, 1/n of it, is taken from
+    /// Random stresses are means over the bins (Eqs. 9 and 10 of van der Hoek et al., 2024), each with n − 1
+    /// in the place of n; the random part that bins of n samples leave in their means, 1/n of it, is taken from
     /// the periodic stresses. Where bins hold equally many samples and do not overlap, periodic and random
     /// stresses add up to the total. Limits: samples of a bin are taken as independent.
     pub fn finish(self) -> Decomposition {

@@ -1,3 +1,5 @@
+//! Bins, averages and their parts against waves that are given.
+
 use super::*;
 use basis::Sense;
 use basis::records::{Grid, Moments, PhaseAverages, STRESSES};

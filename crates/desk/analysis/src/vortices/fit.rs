@@ -62,9 +62,10 @@ struct Linear {
 /// The vortex next to `start` (m), whose length of the exponent is about `length` (m), in `section`.
 ///
 /// Fitted is a Lamb-Oseen vortex in uniform air that is strained, with a jet as wide as its core: what of a
-/// Batchelor vortex's axial velocity shows in a plane that stands askew to it. Least squares of both velocities at all points within 2.5 lengths, Levenberg and Marquardt for
-/// place and length, the rest solved for. None where fewer than ten points are there, where the fit does not
-/// settle, or ends more than three lengths from where it began.
+/// Batchelor vortex's axial velocity shows in a plane that stands askew to it. Least squares of both
+/// velocities at all points within 2.5 lengths, Levenberg and Marquardt for place and length, the rest solved
+/// for. None where fewer than ten points are there, where the fit does not settle, or ends more than three
+/// lengths from where it began.
 ///
 /// Source of the profile: Lamb, "Hydrodynamics", 1932, §334a; Batchelor (1964), J. Fluid Mech. 20.
 pub fn fit_vortex(section: &Section, start: [f64; 2], length: f64) -> Option<Vortex> {
@@ -75,7 +76,7 @@ pub fn fit_vortex(section: &Section, start: [f64; 2], length: f64) -> Option<Vor
         let points = points_about(section, guess);
         guess = settled(section, &points, guess)?;
         let moved = (guess.place[0] - start[0]).hypot(guess.place[1] - start[1]);
-        if guess.length < least || !(moved <= 3.0 * length.max(2.0 * least)) {
+        if guess.length < least || moved.is_nan() || moved > 3.0 * length.max(2.0 * least) {
             return None;
         }
     }

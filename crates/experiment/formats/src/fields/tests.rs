@@ -1,3 +1,5 @@
+//! Fields of other programs: units, times, axes, holes, and what is refused.
+
 use super::*;
 use crate::netcdf::{InstantWriter, PlaneSetting};
 use basis::Vector3;

@@ -1,3 +1,5 @@
+//! Tracks of particles: columns, units, gaps, and what is refused.
+
 use super::*;
 use std::fs;
 

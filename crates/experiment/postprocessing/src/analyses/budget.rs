@@ -110,8 +110,11 @@ fn boxes(
     Ok((rows, n_holed))
 }
 
-/// Name and value of each part.
-const PARTS: [(&str, fn(&Budget) -> f64); 5] = [
+/// Name and value of a part.
+type Part = (&'static str, fn(&Budget) -> f64);
+
+/// All parts.
+const PARTS: [Part; 5] = [
     ("advection", |one| one.advection),
     ("flux by stresses", |one| one.turbulent_flux),
     ("through the sides", |one| one.through_sides),
@@ -166,7 +169,7 @@ fn signals(found: &Averaged, rows: &[BoxRow]) -> Signals {
     // The work of the rotor and of the pressure about it would dwarf what happens in the wake.
     let behind: Vec<&BoxRow> = rows.iter().filter(|row| row.span[0] > 0.0).collect();
     let middle = |row: &&BoxRow| 0.5 * (row.span[0] + row.span[1]) / found.setting.diameter;
-    let line = |(colour, (name, part)): (usize, &(&str, fn(&Budget) -> f64))| TrackLine {
+    let line = |(colour, (name, part)): (usize, &Part)| TrackLine {
         name: (*name).to_owned(),
         colour: colour + 1,
         times: behind.iter().map(middle).collect(),

@@ -49,6 +49,9 @@ const EDGE: f64 = 0.95;
 const THOUSANDTH: f64 = 1e-3;
 const UNIT: &str = "0.001 U³";
 
+/// Name and value of a part of the flux.
+type Part = (&'static str, fn(&FluxPoint) -> f64);
+
 /// What crosses one line, or a tube.
 struct Through {
     name: &'static str,
@@ -287,14 +290,14 @@ fn signals(
 /// What crosses one line or tube, over the distance.
 fn flux_row(found: &Averaged, one: &Through) -> TrackRow {
     let scale = THOUSANDTH * found.setting.wind_speed.powi(3);
-    let line = |(colour, (name, part)): (usize, (&str, fn(&FluxPoint) -> f64))| TrackLine {
+    let line = |(colour, (name, part)): (usize, Part)| TrackLine {
         name: name.to_owned(),
         colour: colour + 1,
         times: distances(found, one.points.iter().map(|point| point.x - found.setting.hub[0])),
         values: one.points.iter().map(|point| part(point) / scale).collect(),
         band: Vec::new(),
     };
-    let kinds: [(&str, fn(&FluxPoint) -> f64); 3] =
+    let kinds: [Part; 3] =
         [("all", |p| p.total), ("periodic", |p| p.periodic), ("random", |p| p.random)];
     TrackRow {
         label: format!("{} ({UNIT})", one.name),

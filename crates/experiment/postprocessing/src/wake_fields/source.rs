@@ -166,8 +166,8 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
     }
 }
 
-/// The averages by phase that the run in `folder` kept: of those the first that reaches along the wind, as most
-/// analyses need it, or else the first.
+/// The averages by phase that the run in `folder` kept: of those the first that reaches along the wind, as
+/// most analyses need it, or else the first.
 fn kept_averages(folder: &RunFolder) -> Result<Option<PathBuf>, PostprocessingError> {
     let mut first = None;
     for path in folder.phase_averages_paths()? {

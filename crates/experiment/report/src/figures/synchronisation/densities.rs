@@ -12,8 +12,8 @@ const GAP: f64 = 16.0;
 const LEFT: f64 = 74.0;
 /// Decades below the highest value that are shown at most.
 const DECADES: f64 = 6.0;
-/// Highest frequency that is still drawn in millihertz (Hz): those of wakes and towers are, those of models in
-/// tunnels are not.
+/// Highest frequency that is still drawn in millihertz (Hz): those of wakes and towers are, those of models
+/// in tunnels are not.
 const HIGHEST_IN_MILLI: f64 = 5.0;
 
 /// The unit of frequency of a figure: how many a hertz has, and its name.
