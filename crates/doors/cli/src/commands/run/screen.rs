@@ -60,7 +60,10 @@ fn cells(estimate: &Estimate) -> String {
     let of_grid = |grid: &GridOfPlan| {
         let [n_x, n_y, n_z] = grid.n_cells;
         let millions = grid.cells() as f64 / 1e6;
-        format!("{n_x} × {n_y} × {n_z} = {millions:.2} million cells of {:.1} m", grid.spacing)
+        // A tunnel's cells are centimetres wide.
+        let digits = if grid.spacing < 1.0 { 3 } else { 1 };
+        let spacing = grid.spacing;
+        format!("{n_x} × {n_y} × {n_z} = {millions:.2} million cells of {spacing:.digits$} m")
     };
     let Some((domain, boxes)) = estimate.grids.split_first() else { return String::new() };
     let boxes: Vec<String> = boxes.iter().map(of_grid).collect();
