@@ -30,8 +30,8 @@ const PASSING: f64 = 60.0;
 /// Time that is looked at (s), two periods of the slowest helix: the same for all, so that the lines of a
 /// record's own spectrum do not follow the frequency that was set.
 const RECORD: f64 = 252.0;
-/// Filters by which the hub vortex is found, the source's, the one that bears shear and noise, and that of the
-/// whole wake: what they look for, and how a row names it.
+/// Filters by which the hub vortex is found, the source's, the one that bears shear and noise, and that of
+/// the whole wake: what they look for, and how a row names it.
 const FILTERS: [(&str, &str); 3] = [
     ("fast region", ""),
     ("fitted jet", " by a fitted jet"),

@@ -153,9 +153,14 @@ fn powers([baseline, cw, ccw, optimum]: &[Wake; 4]) -> Vec<Row> {
 }
 
 fn fluxes([baseline, cw, ccw, _]: &[Wake; 4]) -> Vec<Row> {
+    let furthest = baseline.flux.iter().map(|point| point.x).fold(f64::NEG_INFINITY, f64::max);
+    let turn = sign_flip(&baseline.flux, SMOOTHING);
+    if turn.is_none() {
+        tell!("the baseline's flux of mean kinetic energy turns nowhere up to {furthest:.2} D");
+    }
     let mut rows = vec![row(
-        "distance at which the flux of mean kinetic energy through z = ± R turns into the wake, baseline",
-        sign_flip(&baseline.flux, SMOOTHING).unwrap_or(f64::NAN),
+        "distance at which the flux of mean kinetic energy through z = ± R turns into the wake, baseline, the furthest looked at where it does not",
+        turn.unwrap_or(furthest),
         (2.0, Within(FLIP_TOLERANCE)),
         "D",
     )];

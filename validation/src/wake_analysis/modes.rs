@@ -2,6 +2,7 @@
 
 use crate::Row;
 use crate::folds::worst;
+use crate::row::Tolerance;
 use crate::row::Tolerance::{AtMost, Within};
 use analysis::modes::{HeldSnapshots, PodSettings, SpodSettings, Window, area_share, pod, spod};
 use basis::records::Grid;
@@ -112,14 +113,6 @@ pub(super) fn rows() -> Vec<Row> {
     });
     let energies = apart(&by_energy.energies, &stored.energies);
     let total = (by_energy.total / stored.total - 1.0).abs();
-    let row = |what: &str, measured: f64, expected: f64, tolerance| Row {
-        what: format!("modes of 5 series and noise on 42 points, read in strips: {what}"),
-        measured,
-        expected,
-        tolerance,
-        unit: "–",
-        source: NUMPY,
-    };
     vec![
         row("numbers at both ends of the field that are not the script's", n_unlike, 0.0, AtMost),
         row("blocks", spectral.n_blocks as f64, stored.n_blocks as f64, Within(0.0)),
@@ -134,6 +127,17 @@ pub(super) fn rows() -> Vec<Row> {
             AtMost,
         ),
     ]
+}
+
+fn row(what: &str, measured: f64, expected: f64, tolerance: Tolerance) -> Row {
+    Row {
+        what: format!("modes of 5 series and noise on 42 points, read in strips: {what}"),
+        measured,
+        expected,
+        tolerance,
+        unit: "–",
+        source: NUMPY,
+    }
 }
 
 /// Size of the product of two modes, each a complex number at each point of u, v and w.

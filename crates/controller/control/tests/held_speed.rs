@@ -1,4 +1,5 @@
-//! Rotor speed held by torque: at its reference in any wind below rated, and with the same bits after a restart.
+//! Rotor speed held by torque: at its reference in any wind below rated, and with the same bits after a
+//! restart.
 
 mod rotor;
 

@@ -248,8 +248,8 @@ pub(crate) fn prescribed_step(rotor_speed: f64) -> f64 {
     PRESCRIBED_STEP.min(FARTHEST_PRESCRIBED_TURN / rotor_speed)
 }
 
-/// The same for a first turbine of `diameter` (m) and `hub_height` (m), in steps of `step` (s) unless the case
-/// says otherwise.
+/// The same for a first turbine of `diameter` (m) and `hub_height` (m), in steps of `step` (s) unless the
+/// case says otherwise.
 pub(crate) fn without_air(
     case: &Case,
     diameter: f64,

@@ -11,6 +11,7 @@ mod lock;
 mod over_offset;
 mod phase;
 mod precursor;
+mod request;
 mod seeds;
 mod signals;
 mod sweep;

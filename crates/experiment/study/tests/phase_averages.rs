@@ -125,3 +125,22 @@ fn instants_sorted_by_hand_have_the_same_means_and_a_break_changes_no_bit() {
         assert!(fs::read(whole.join(file)).expect(file) == other, "{file} has other bits");
     }
 }
+
+/// What `formats`' own tests ask of every case whose outputs they know.
+#[test]
+fn shipped_cases_that_ask_for_averages_read_and_read_back() {
+    study::outputs::announce();
+    let mut n_read = 0;
+    for shipped in formats::shipped::CASES {
+        if !shipped.text().contains("kind = \"phase-averages\"") {
+            continue;
+        }
+        for case in shipped.cases().expect("a case") {
+            let again = formats::case::parse("again", &formats::case::write(&case), &[]);
+            assert_eq!(again.expect("what was written"), case, "{}", shipped.name);
+            assert!(case.description.is_some_and(|words| words.len() > 20), "{}", shipped.name);
+            n_read += 1;
+        }
+    }
+    assert!(n_read > 0);
+}

@@ -1,10 +1,10 @@
 //! Rotor speed held by torque at one tip-speed ratio of the case's wind, as turbines in wind tunnels are run
 //! upstream: thrust then does not follow the rotor's speed.
 //!
-//! PI control of torque on measured speed with the gains of the turbine's own torque control, within its limits
-//! on torque and its rate; collective pitch is that of greedy control. Source: van der Hoek et al., Wind Energy
-//! (2024), doi:10.1002/we.2896, §2.1. Limits: for winds below rated; above, torque ends at rated and pitch holds
-//! rated speed.
+//! PI control of torque on measured speed with the gains of the turbine's own torque control, within its
+//! limits on torque and its rate; collective pitch is that of greedy control. Source: van der Hoek et al.,
+//! Wind Energy (2024), doi:10.1002/we.2896, §2.1. Limits: for winds below rated; above, torque ends at
+//! rated and pitch holds rated speed.
 
 mod kind;
 

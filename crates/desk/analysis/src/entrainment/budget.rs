@@ -26,13 +26,13 @@ pub struct Region {
 /// What changes the mean kinetic energy in a control volume, over density (m⁵/s³). What comes in is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
-    /// Carried in by the mean flow, through all faces: −∮ ½ūᵢūᵢ ūⱼnⱼ dA.
+    /// Carried in by the mean flow, through all faces: −∮ ½ūᵢūᵢ ūⱼnⱼ dA (m⁵/s³).
     pub advection: f64,
-    /// Work of the mean pressure: −∮ p̄ ūⱼnⱼ dA; zero where there is none on record.
+    /// Work of the mean pressure: −∮ p̄ ūⱼnⱼ dA (m⁵/s³); zero where there is none on record.
     pub pressure: f64,
-    /// Carried in by stresses: −∮ ūᵢ⟨uᵢ'uⱼ'⟩nⱼ dA.
+    /// Carried in by stresses: −∮ ūᵢ⟨uᵢ'uⱼ'⟩nⱼ dA (m⁵/s³).
     pub turbulent_flux: f64,
-    /// Handed over to fluctuations, a loss where it is negative: ∫ ⟨uᵢ'uⱼ'⟩ ∂ūᵢ/∂xⱼ dV.
+    /// Handed over to fluctuations, a loss where it is negative: ∫ ⟨uᵢ'uⱼ'⟩ ∂ūᵢ/∂xⱼ dV (m⁵/s³).
     pub production: f64,
     /// The flux by stresses through the faces along the wind, that is without those across it (m⁵/s³).
     pub through_sides: f64,

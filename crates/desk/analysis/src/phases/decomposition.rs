@@ -80,9 +80,9 @@ impl Decomposer {
     /// The decomposition.
     ///
     /// Random stresses are means over the bins (Eqs. 9 and 10 of van der Hoek et al., 2024), each with n − 1
-    /// in the place of n; the random part that bins of n samples leave in their means, 1/n of it, is taken from
-    /// the periodic stresses. Where bins hold equally many samples and do not overlap, periodic and random
-    /// stresses add up to the total. Limits: samples of a bin are taken as independent.
+    /// in the place of n; the random part that bins of n samples leave in their means, 1/n of it, is taken
+    /// from the periodic stresses. Where bins hold equally many samples and do not overlap, periodic and
+    /// random stresses add up to the total. Limits: samples of a bin are taken as independent.
     pub fn finish(self) -> Decomposition {
         let n_bins = self.n_bins;
         let over = |sum: f64, i: usize| sum / f64::from(n_bins[i]);

@@ -1,8 +1,8 @@
 //! Velocity averaged by phase: bins of rotor and helix azimuth, sums that stream, the triple decomposition.
 //!
 //! Source: van der Hoek, Van den Abbeele, Simao Ferreira and van Wingerden (2024), "Maximizing wind farm
-//! power output with the helix approach: experimental validation and wake analysis using tomographic particle image
-//! velocimetry", Wind Energy, §3.1 to §3.3.
+//! power output with the helix approach: experimental validation and wake analysis using tomographic
+//! particle image velocimetry", Wind Energy, §3.1 to §3.3.
 
 mod average;
 mod bins;

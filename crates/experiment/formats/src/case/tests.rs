@@ -214,6 +214,9 @@ fn every_shipped_case_reads_and_reads_back() {
             assert_eq!(again, file, "{path:?}");
             continue;
         }
+        if crate::fuzz::asks_for_what_studies_write(&fs::read_to_string(&path).unwrap()) {
+            continue;
+        }
         let files = read_all(&path, &[]).unwrap_or_else(|error| panic!("{}", error.to_lines()));
         for file in files.files {
             assert_eq!(parse("again", &write(&file.case), &[]).unwrap(), file.case, "{path:?}");

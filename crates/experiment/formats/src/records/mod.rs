@@ -213,12 +213,6 @@ impl RunFolder {
         self.path.join(format!("{INFLOW}{turbine}.bts"))
     }
 
-    /// `scans-T1.lidar.nc`: the scans of the lidar `sensor` of `turbine`; until the run is complete they are
-    /// in `scans-T1.lidar.nc.part`.
-    pub fn scans_path(&self, turbine: &str, sensor: &str) -> PathBuf {
-        self.path.join(scans_name(turbine, sensor))
-    }
-
     /// `checkpoint`.
     pub fn checkpoint_path(&self) -> PathBuf {
         self.path.join("checkpoint")

@@ -28,11 +28,7 @@ const END_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> {
     ranges::check(document, place)?;
-    let missing = |group: &'static str| {
-        let fix =
-            format!("add [{group}]; `wakemix turbine show nrel-5mw --file` prints a complete one");
-        place.error(&[Key(group)], format!("a group [{group}]"), "none", fix)
-    };
+    let missing = |group| missing(group, place);
     let rotor = document.rotor.as_ref().ok_or_else(|| missing("rotor"))?;
     let blade = document.blade.as_ref().ok_or_else(|| missing("blade"))?;
     let structure = document.blade_structure.as_ref().ok_or_else(|| missing("blade_structure"))?;
@@ -87,6 +83,13 @@ pub(super) fn check(document: &Document, place: &Place) -> Checked<TurbineFile> 
         controller: controller_of(controller_group, radius, drive_train.generator_efficiency),
         sources: checked_sources(&sources, place)?,
     })
+}
+
+/// What is told of a `group` that is not there.
+fn missing(group: &'static str, place: &Place) -> TurbineFileError {
+    let fix =
+        format!("add [{group}]; `wakemix turbine show nrel-5mw --file` prints a complete one");
+    place.error(&[Key(group)], format!("a group [{group}]"), "none", fix)
 }
 
 fn check_blades(n_blades: usize, place: &Place) -> Checked<()> {

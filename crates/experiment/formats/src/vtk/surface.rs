@@ -8,8 +8,8 @@ use std::path::Path;
 const WHAT: &str = "a surface (VTK)";
 
 /// Writes the triangles whose corners are among `points` (m) to `path`, with `values`, each a name and a
-/// number for each point, and the instant `time` (s), where it has one, as ParaView's time. Its folder is made
-/// where there is none.
+/// number for each point, and the instant `time` (s), where it has one, as ParaView's time. Its folder is
+/// made where there is none.
 ///
 /// # Errors
 /// [`FileError::System`].

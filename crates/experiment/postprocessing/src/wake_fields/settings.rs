@@ -2,7 +2,7 @@
 
 use super::refused;
 use crate::PostprocessingError;
-use crate::analyses::{AnalysisSetting, Request, Takes};
+use crate::request::{AnalysisSetting, Request, Takes};
 use basis::records::FieldSetting;
 use formats::fields::{FoundSetting, Lengths, Zeros};
 use std::path::Path;

@@ -3,8 +3,8 @@
 use super::settings::{self, AZIMUTHS, FIELD, FROM, TURBINE};
 use super::{Angles, refused};
 use crate::PostprocessingError;
-use crate::analyses::Request;
 use crate::phase::query::folder_of;
+use crate::request::Request;
 use basis::records::{Field, FieldSetting};
 use formats::fields::FieldFile;
 use formats::records::{RunFolder, StoredPhaseAverages, is_phase_averages};

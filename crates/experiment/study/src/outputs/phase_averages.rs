@@ -1,8 +1,9 @@
 //! Planes and volumes averaged by rotor and helix azimuth while the run goes on: `averages-NAME-PLACE.nc`.
 //!
-//! A case asks for it by a name, `output.further.NAME = { kind = "phase-averages", … }`, as often as it likes.
-//! Instants are taken in at the end of steps of the analysed time, at the azimuth of a turbine and, where one
-//! has a helix, at the azimuth of the pitch that its blades delivered (van der Hoek et al. 2024, Eq. 6).
+//! A case asks for it by a name, `output.further.NAME = { kind = "phase-averages", … }`, as often as it
+//! likes. Instants are taken in at the end of steps of the analysed time, at the azimuth of a turbine and,
+//! where one has a helix, at the azimuth of the pitch that its blades delivered (van der Hoek et al. 2024,
+//! Eq. 6).
 
 mod keys;
 mod places;

@@ -14,9 +14,9 @@
 //! A real plate has play and is not quite flat on its shaft: van der Hoek et al., Wind Energy (2024),
 //! doi:10.1002/we.2896, §2.2, measured other amplitudes for the same motors where the tilt goes round with
 //! the rotor than where it goes against it, and a bias of yaw, so that the amplitude varies over a period.
-//! Where from the two amplitudes come they do not say. Here the plate has play about the shaft: it follows the
-//! direction in which the rods tilt it with a lag of the slack, and leans on one flank or on the other, each
-//! with a gain of its own.
+//! Where from the two amplitudes come they do not say. Here the plate has play about the shaft: it follows
+//! the direction in which the rods tilt it with a lag of the slack, and leans on one flank or on the other,
+//! each with a gain of its own.
 
 use super::{PitchActuator, PitchState};
 use basis::angle::wrap_to_half_turn;

@@ -76,7 +76,7 @@ fn errors_name_file_line_key_and_fix() {
         (
             "\"helix\", sense",
             "\"phase-lock\", sense",
-            "`run.helix.control.T1.kind` = \"phase-lock\" is unknown; expected one of \"baseline\", \"helix\", \"pulse\", \"phase-sync\", \"meandering\", \"probing\", \"lidar-loop\", \"steering\", \"derate\", \"discon\", \"absent\"",
+            "`run.helix.control.T1.kind` = \"phase-lock\" is unknown; expected one of \"baseline\", \"held-speed\", \"helix\", \"pulse\", \"phase-sync\", \"meandering\", \"probing\", \"lidar-loop\", \"steering\", \"derate\", \"discon\", \"absent\"",
         ),
         (
             "\"helix\", sense = \"ccw\"",

@@ -65,8 +65,8 @@ fn product(n_points: [usize; 3]) -> u64 {
     n_points.map(|n| n as u64).iter().product()
 }
 
-/// Points along x, y, z of every `stride`-th cell of `plan` that `values` keep; lengths count `from` the first
-/// hub (m).
+/// Points along x, y, z of every `stride`-th cell of `plan` that `values` keep; lengths count `from` the
+/// first hub (m).
 fn kept(plan: &Plan, values: &Values, stride: usize, from: [f64; 3]) -> [Range<usize>; 3] {
     let (origin, keys) = (plan.origin.to_array(), ["x_diameters", "y_diameters", "z_diameters"]);
     std::array::from_fn(|axis| {

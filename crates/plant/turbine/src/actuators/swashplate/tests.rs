@@ -87,8 +87,8 @@ fn a_crank_moves_its_rod_by_the_sine_of_its_angle() {
 }
 
 proptest! {
-    /// What three blades are asked for, a straight plate gives, wherever the rotor stands and however its rods
-    /// are driven.
+    /// What three blades are asked for, a straight plate gives, wherever the rotor stands and however its
+    /// rods are driven.
     #[test]
     fn three_blades_get_what_they_were_asked_for(
         azimuth in -9.0..9.0_f64, pitches in prop::array::uniform3(-0.12..0.12_f64), crank in any::<bool>(),
