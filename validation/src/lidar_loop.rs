@@ -182,9 +182,9 @@ fn left(designed: &Synthesized) -> Result<f64, String> {
         last.ok_or("the design has no step response")
     };
     let mut squares = 0.0;
-    for output in 0..2 {
+    for (output, asked) in SHIFT.iter().enumerate() {
         let reached = SHIFT[0] * last(0, output)? + SHIFT[1] * last(1, output)?;
-        squares += (SHIFT[output] - reached).powi(2);
+        squares += (asked - reached).powi(2);
     }
     Ok(squares.sqrt() / SHIFT[0].hypot(SHIFT[1]))
 }

@@ -33,11 +33,12 @@ fn averages(random: &mut Random, n_each: usize) -> PhaseAverages {
     let mut velocity = [const { [0.0_f32; N_POINTS] }; 3];
     for step in 0..n as usize {
         let (rotor, helix) = (TAU * random.uniform(), TAU * random.uniform());
-        for point in 0..N_POINTS {
+        let [along, _, up] = &mut velocity;
+        for (point, (along, up)) in along.iter_mut().zip(up).enumerate() {
             let (first, second) = (random.normal(), random.normal());
             let other = CORRELATION * first + (1.0 - CORRELATION.powi(2)).sqrt() * second;
-            velocity[0][point] = (MEAN + wave(helix, point) + RANDOM * first) as f32;
-            velocity[2][point] = (0.5 * wave(helix, point) + RANDOM * other) as f32;
+            *along = (MEAN + wave(helix, point) + RANDOM * first) as f32;
+            *up = (0.5 * wave(helix, point) + RANDOM * other) as f32;
         }
         let rows = velocity.each_ref().map(|row| &row[..]);
         averager.add(step as f64, rotor, Some(helix), rows).expect("a sound instant");

@@ -14,10 +14,11 @@ pub(crate) fn solved<const N: usize>(
         if pivot == 0.0 || !pivot.is_finite() {
             return None;
         }
+        let above = matrix[column];
         for row in column + 1..N {
             let factor = matrix[row][column] / pivot;
-            for place in column..N {
-                matrix[row][place] -= factor * matrix[column][place];
+            for (value, &over) in matrix[row].iter_mut().zip(&above).skip(column) {
+                *value -= factor * over;
             }
             right[row] -= factor * right[column];
         }

@@ -257,7 +257,7 @@ fn azimuths_and_times_that_tell_nothing_are_refused() {
     };
     let head = "VARIABLES = x y z u v w\n";
     fs::write(path("bare.dat"), format!("{head}{}{}", zone(""), zone(""))).unwrap();
-    let timed = [" SOLUTIONTIME=0", " SOLUTIONTIME=0.5"].map(|time| zone(time));
+    let timed = [" SOLUTIONTIME=0", " SOLUTIONTIME=0.5"].map(zone);
     fs::write(path("timed.dat"), format!("{head}{}", timed.concat())).unwrap();
     fs::write(path("sparse.csv"), "time_s,Azimuth_deg\n0,0\n1,170\n2,340\n").unwrap();
     fs::write(path("turns.csv"), "time_s,Azimuth [grad]\n0,0\n1,1\n").unwrap();

@@ -151,11 +151,12 @@ fn travelling_wave(n_each: usize, seed: u64) -> (Bins, PhaseAverages) {
     for step in 0..n_each * bins.len() {
         let (helix, rotor) = (TAU * even(&mut random), TAU * even(&mut random));
         let mut velocity = [[0.0_f32; 5]; 3];
-        for point in 0..5 {
+        let [along, _, up] = &mut velocity;
+        for (point, (along, up)) in along.iter_mut().zip(up).enumerate() {
             let angle = 2.0 * helix + point as f64;
             let [first, second] = normals(&mut random);
-            velocity[0][point] = (8.0 + 0.6 * angle.cos() + 0.2 * first) as f32;
-            velocity[2][point] = (0.3 * angle.sin() + 0.2 * (0.8 * first + 0.6 * second)) as f32;
+            *along = (8.0 + 0.6 * angle.cos() + 0.2 * first) as f32;
+            *up = (0.3 * angle.sin() + 0.2 * (0.8 * first + 0.6 * second)) as f32;
         }
         let rows = velocity.each_ref().map(|row| &row[..]);
         averager.add(step as f64, rotor, Some(helix), rows).unwrap();

@@ -86,10 +86,10 @@ proptest! {
         prop_assert!((own[2] - (g[1][0] - g[0][1])).abs() < 1e-9);
         // Q = ½ (|Ω|² − |S|²) + ½ (tr)².
         let (mut turn, mut strain) = (0.0, 0.0);
-        for i in 0..3 {
-            for j in 0..3 {
-                turn += (0.5 * (g[i][j] - g[j][i])).powi(2);
-                strain += (0.5 * (g[i][j] + g[j][i])).powi(2);
+        for (i, row) in g.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                turn += (0.5 * (value - g[j][i])).powi(2);
+                strain += (0.5 * (value + g[j][i])).powi(2);
             }
         }
         let trace = g[0][0] + g[1][1] + g[2][2];

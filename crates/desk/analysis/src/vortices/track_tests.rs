@@ -16,15 +16,15 @@ fn pairs(n_frames: usize, period: usize, place: impl Fn(usize) -> f64) -> Vec<Ve
     for pair in 0..n_frames.div_ceil(2 * period) {
         let (births, radius) = ([2 * pair * period, (2 * pair + 1) * period], 0.5 * gap);
         // Both go on at one speed, turning about their middle by a quarter until `place`.
-        for step in births[1]..n_frames.min(births[1] + 80) {
-            let middle = speed * (step - births[1]) as f64 + radius;
+        for (age, frame) in frames.iter_mut().skip(births[1]).take(80).enumerate() {
+            let middle = speed * age as f64 + radius;
             let share = (middle - radius) / (place(pair) - radius);
             let (sine, cosine) = (share * TAU / 4.0).sin_cos();
-            frames[step].push(vortex(middle + radius * cosine, 1.0 - radius * sine));
-            frames[step].push(vortex(middle - radius * cosine, 1.0 + radius * sine));
+            frame.push(vortex(middle + radius * cosine, 1.0 - radius * sine));
+            frame.push(vortex(middle - radius * cosine, 1.0 + radius * sine));
         }
-        for step in births[0]..births[1].min(n_frames) {
-            frames[step].push(vortex(speed * (step - births[0]) as f64, 1.0));
+        for (age, frame) in frames.iter_mut().skip(births[0]).take(period).enumerate() {
+            frame.push(vortex(speed * age as f64, 1.0));
         }
     }
     frames

@@ -30,12 +30,12 @@ pub(super) struct NetCdfFields {
     n_points: usize,
 }
 
+/// The fields, with their points, instants and what the file tells of them.
+type Opened = (NetCdfFields, Grid, Vec<Option<f64>>, FoundSetting);
+
 impl NetCdfFields {
     /// The fields at `path`, with their points, instants and what the file tells of them.
-    pub(super) fn open(
-        path: &Path,
-        lengths: Lengths,
-    ) -> Result<(Self, Grid, Vec<Option<f64>>, FoundSetting), FileError> {
+    pub(super) fn open(path: &Path, lengths: Lengths) -> Result<Opened, FileError> {
         let unreadable = |error| FileError::system("read", WHAT, path, error);
         let length = atomic::open(path).and_then(|file| file.metadata()).map_err(unreadable)?.len();
         let most = usize::try_from(length).unwrap_or(usize::MAX);
@@ -44,11 +44,7 @@ impl NetCdfFields {
         read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))
     }
 
-    fn decode(
-        file: NcFile,
-        lengths: Lengths,
-        most: usize,
-    ) -> Result<(Self, Grid, Vec<Option<f64>>, FoundSetting), String> {
+    fn decode(file: NcFile, lengths: Lengths, most: usize) -> Result<Opened, String> {
         let names = components(&file)?;
         let grid = grid(&file, lengths, most)?;
         let n_points = grid.len();

@@ -127,9 +127,8 @@ fn head_of(head: &str) -> Result<(Grid, Option<f64>), String> {
         let [low, high] = [extent[2 * axis], extent[2 * axis + 1]];
         let n = high.checked_sub(low).and_then(|n| usize::try_from(n).ok());
         grid.n_points[axis] = n.and_then(|n| n.checked_add(1)).ok_or("its extent is empty")?;
-        if !(grid.spacing[axis] > 0.0 && grid.spacing[axis].is_finite())
-            || !grid.origin[axis].is_finite()
-        {
+        let is_sound = grid.spacing[axis] > 0.0 && grid.spacing[axis].is_finite();
+        if !is_sound || !grid.origin[axis].is_finite() {
             return Err("its `Origin` or `Spacing` is no sound number".to_owned());
         }
         grid.origin[axis] += low as f64 * grid.spacing[axis];
