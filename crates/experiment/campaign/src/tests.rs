@@ -278,8 +278,9 @@ fn a_task_that_cannot_be_made_is_failed_and_the_others_are_made() {
     // No NREL 5 MW runs in 40 m/s: what only the turbine tells, not the case reader.
     let (_folder, out) = begun(&CAMPAIGN.replace("[8, 9.5]", "[8, 9, 40, 9.5]"));
     let ended = made(&out, &RunOptions::default());
-    assert_eq!((ended.n_failed, ended.counts.done, ended.counts.failed), (3, 9, 3));
     let failures = status(&out).unwrap().failures;
+    let found = (ended.n_failed, ended.counts.done, ended.counts.failed);
+    assert_eq!(found, (3, 9, 3), "{failures:?}");
     assert_eq!(failures[0].settings, "wind.speed = 40, control.T1.amplitude_deg = 1");
     assert!(failures[0].message.contains("40"), "{failures:?}");
     assert_eq!(made(&out, &RunOptions::default()).n_failed, 0);
