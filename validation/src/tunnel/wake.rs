@@ -2,6 +2,7 @@
 
 use super::TUNNEL;
 use crate::Row;
+use crate::folds::worst;
 use crate::row::Tolerance::{AtLeast, Within};
 use crate::studies::failure;
 use analysis::entrainment::{Edge, FluxPoint, available_power, flux_along, integral, sign_flip};
@@ -153,7 +154,7 @@ fn powers([baseline, cw, ccw, optimum]: &[Wake; 4]) -> Vec<Row> {
 }
 
 fn fluxes([baseline, cw, ccw, _]: &[Wake; 4]) -> Vec<Row> {
-    let furthest = baseline.flux.iter().map(|point| point.x).fold(f64::NEG_INFINITY, f64::max);
+    let furthest = worst(baseline.flux.iter().map(|point| point.x));
     let turn = sign_flip(&baseline.flux, SMOOTHING);
     if turn.is_none() {
         tell!("the baseline's flux of mean kinetic energy turns nowhere up to {furthest:.2} D");

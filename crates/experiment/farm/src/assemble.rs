@@ -7,8 +7,8 @@ use crate::coefficients::coefficient_table;
 use crate::plan::{Footprint, Plan};
 use crate::solvers::{Smearing, Solver};
 use crate::{Farm, Machine};
-use basis::Vector3;
 use basis::keys::Objection;
+use basis::{PerBlade, Vector3};
 use control::baseline::Constants;
 use control::{ControlError, Controller, Site};
 use flow::{FlowSolver, lattice};
@@ -51,6 +51,18 @@ pub enum AssemblyError {
         "the azimuth offset of its individual pitch control was neither given nor identified before the run; give `azimuth_offset_deg` in `individual_pitch` of its turbine file's [controller]"
     )]
     NoIndividualPitchOffset,
+    /// A turbine has not as many blades as errors of their mounting.
+    #[error(
+        "`pitch_misalignment_deg` of {turbine} names {given} blades, and its rotor has {n_blades}; give one angle for each, 0 for a blade that is mounted right"
+    )]
+    Misalignment {
+        /// Turbine.
+        turbine: String,
+        /// Blades for which an angle is given (–).
+        given: usize,
+        /// Blades of its rotor (–).
+        n_blades: usize,
+    },
     /// A turbine's instruments cannot be.
     #[error(transparent)]
     Instruments(#[from] InstrumentError),
@@ -194,6 +206,25 @@ pub(crate) fn turbine_settings(
     }
 }
 
+/// Errors with which the blades of a turbine of `model` are mounted as `placement` says (rad).
+///
+/// # Errors
+/// [`AssemblyError::Misalignment`].
+pub fn misalignment(
+    placement: &Placement,
+    model: &TurbineModel,
+) -> Result<PerBlade<f64>, AssemblyError> {
+    let (given, n_blades) = (&placement.pitch_misalignment, model.definition.n_blades);
+    if given.is_empty() {
+        return Ok(PerBlade::splat(n_blades, 0.0));
+    }
+    if given.len() != n_blades {
+        let turbine = placement.name.clone();
+        return Err(AssemblyError::Misalignment { turbine, given: given.len(), n_blades });
+    }
+    Ok(PerBlade::from_fn(n_blades, |blade| given[blade]))
+}
+
 /// The farm of one run, at time zero: the turbines that are there in it, in the case's order, in `air`.
 /// `models` holds one entry per turbine of the case, in its order, each [equipped](TurbineModel::equipped)
 /// for the case; the farm's machines are those of [`Run::present`].
@@ -226,6 +257,7 @@ pub fn farm(
         let tower = tower_influence(model, placement, foot);
         let settings = turbine_settings(case, plan, model, index, tower);
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
+        let turbine = turbine.misaligned(misalignment(placement, model)?);
         let turbine = in_air_of(solver, turbine);
         let control = controller(&run.control[index], model, case, plan)?;
         let sensing = sensing(case, plan, model, index)?;

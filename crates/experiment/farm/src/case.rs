@@ -198,6 +198,8 @@ pub struct Placement {
     /// Turn of the nacelle from facing the mean wind when time begins, counter-clockwise seen from above
     /// (rad).
     pub yaw: f64,
+    /// Error with which each blade's pitch is mounted, positive to feather (rad); empty where there is none.
+    pub pitch_misalignment: Vec<f64>,
     /// Whether blades, tower and drive train bend.
     pub flexible: bool,
     /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.

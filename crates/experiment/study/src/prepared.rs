@@ -8,7 +8,7 @@ use crate::linear_laws::{self, LawDigests};
 use crate::models::{self, Machines};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
-use farm::assemble::{AssemblyError, TurbineModel, controller, sensing};
+use farm::assemble::{AssemblyError, TurbineModel, controller, misalignment, sensing};
 use farm::case::{Case, Run};
 use farm::operation::check_operation;
 use farm::wind::{self, Recorded, Site};
@@ -154,6 +154,10 @@ fn pointed_at(file: &CaseFile, error: StudyError) -> StudyError {
         StudyError::Plan(error) => {
             StudyError::Case(objection(file, &error.key(), error.to_string()))
         }
+        StudyError::Assembly(AssemblyError::Misalignment { ref turbine, .. }) => {
+            let path = ["turbine", turbine.as_str(), "pitch_misalignment_deg"];
+            StudyError::Case(objection(file, &path, error.to_string()))
+        }
         StudyError::Assembly(AssemblyError::Sensor(ref found)) => {
             let path = ["turbine", &found.turbine, "sensors", &found.sensor, found.key];
             StudyError::Case(objection(file, &path, error.to_string()))
@@ -179,6 +183,9 @@ fn check_control(
     plan: &Plan,
     models: &[TurbineModel],
 ) -> Result<BTreeMap<String, Vec<usize>>, StudyError> {
+    for (placement, model) in case.turbines.iter().zip(models) {
+        misalignment(placement, model)?;
+    }
     let mut n_told = BTreeMap::new();
     for run in &case.runs {
         let of_turbines =

@@ -23,7 +23,7 @@ use crate::structure::{
     AppliedLoads, DegreeOfFreedom, GRAVITY, Pitch, Projection, Structure, StructureError,
 };
 use aerodynamics::Aerodynamics;
-use basis::{Answer, Channel, Commands, PointForce, Truth, Vector3};
+use basis::{Answer, Channel, Commands, PerBlade, PointForce, Truth, Vector3};
 use nacelle::Facing;
 use set_up::{all_but_the_generator, frame_at, lengths, longest_step};
 use state::Readings;
@@ -53,6 +53,8 @@ pub struct Turbine {
     frame: Frame,
     air_density: f64,
     smearing_length: f64,
+    /// By how much each blade's pitch is mounted wrong (rad).
+    misalignment: PerBlade<f64>,
     state: TurbineState,
     workspace: Workspace,
 }
@@ -103,6 +105,7 @@ impl Turbine {
         let n_points = definition.n_blades * N_ELEMENTS;
         let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
         let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };
+        let misalignment = PerBlade::splat(definition.n_blades, 0.0);
         let mut turbine = Self {
             definition,
             line,
@@ -114,6 +117,7 @@ impl Turbine {
             frame,
             air_density: settings.air_density,
             smearing_length,
+            misalignment,
             state,
             workspace,
         };
@@ -121,6 +125,15 @@ impl Turbine {
         turbine.facing.rotor = turbine.structure.frame(0.0).turned(position, -settings.yaw);
         turbine.place_stations();
         Ok(turbine)
+    }
+
+    /// The same turbine whose blades are mounted at their bearings with these errors of pitch (rad, positive
+    /// to feather): an aerodynamic imbalance. Air and structure feel it; actuators know nothing of it, nor
+    /// does what tells of pitch, which is that of the bearings.
+    pub fn misaligned(mut self, misalignment: PerBlade<f64>) -> Self {
+        self.misalignment = misalignment;
+        self.place_stations();
+        self
     }
 
     /// The same turbine without tower and nacelle in the wind: the rotor alone, as blade-element momentum
@@ -320,7 +333,7 @@ impl Turbine {
 
     /// On return `values` holds each of [`Turbine::channels`] in SI units, in the middle of the last step.
     pub fn write_channels(&self, values: &mut [f64]) {
-        self.structure.write_channels(values);
+        self.structure.write_channels(&self.misalignment, values);
     }
 
     /// The state, for a checkpoint.
@@ -337,9 +350,9 @@ impl Turbine {
 
     /// On return the workspace's motions, stations and their axes are those of now.
     fn place_stations(&mut self) {
-        let pitch = self.state.pitch.map(|blade| Pitch {
-            angle: blade.pitch,
-            rate: blade.rate,
+        let pitch = PerBlade::from_fn(self.state.pitch.len(), |blade| Pitch {
+            angle: self.state.pitch[blade].pitch + self.misalignment[blade],
+            rate: self.state.pitch[blade].rate,
             acceleration: 0.0,
         });
         let (frame, drag) = self.facing.turned(self.state.nacelle.angle);

@@ -17,6 +17,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         discon: None,
         position: Position::Diameters(position),
         yaw: 0.0,
+        pitch_misalignment: Vec::new(),
         flexible: true,
         dynamic_stall: false,
         dynamic_inflow: DynamicInflow::default(),

@@ -92,6 +92,11 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             discon: section.optional_text("discon"),
             position: position_of(section, &turbines),
             yaw: section.number("yaw_deg").to_radians(),
+            pitch_misalignment: section
+                .numbers("pitch_misalignment_deg")
+                .iter()
+                .map(|angle| angle.to_radians())
+                .collect(),
             flexible: section.choice("structure") != "rigid",
             dynamic_stall: if section.has("stall") {
                 section.choice("stall") == "dynamic"

@@ -167,6 +167,13 @@ pub(super) static TURBINE: Table = Table {
             "Yaw misalignment: turn of the nacelle from facing the mean wind, positive counter-clockwise seen from above, which takes the wake to the right looking downwind. It stays so unless `kind = \"steering\"` turns it.",
         ),
         key(
+            "pitch_misalignment_deg",
+            Holds::Numbers(Range { low: -20.0, open: false, high: 20.0 }),
+            "deg",
+            Value("[]"),
+            "Aerodynamic imbalance: error with which the pitch of each blade is mounted, one angle for each in their order, positive to feather. Pitch as it is commanded, limited, measured and written is that of the bearings, without it. What is found before the runs (azimuth offsets) is found with blades that are mounted right. Empty: all are.",
+        ),
+        key(
             "structure",
             Holds::Choice(&["flexible", "rigid"]),
             "",

@@ -88,6 +88,16 @@ pub(super) fn yaw_text(turbine: &Placement) -> String {
     }
 }
 
+/// How wrong the blades of `turbine` are mounted as a line of `[[turbine]]`; nothing where they are not, for
+/// the same reason.
+pub(super) fn misalignment_text(turbine: &Placement) -> String {
+    if turbine.pitch_misalignment.is_empty() {
+        return String::new();
+    }
+    let angles: Vec<f64> = turbine.pitch_misalignment.iter().map(|one| degrees(*one)).collect();
+    format!("pitch_misalignment_deg = {angles:?}\n")
+}
+
 #[cfg(test)]
 mod tests {
     use crate::case::{fingerprint, parse, write};
@@ -111,6 +121,7 @@ mod tests {
         let layouts = [
             ("position_diameters = [0, 0]", "position_diameters = [5, 1]"),
             ("position = [431250.5, 120.0]\nyaw_deg = -17.3", "position = [432000, -3]"),
+            ("position = [0, 0]\npitch_misalignment_deg = [0.3, -1.7, 0]", "position = [900, 0]"),
         ];
         for (first, second) in layouts {
             for wind in ["", "direction_deg = 0", "direction_deg = 241.7", "direction_deg = 360"] {

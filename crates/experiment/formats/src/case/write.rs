@@ -4,7 +4,7 @@ use super::instruments::instruments_text;
 use super::keys;
 use super::kinds;
 use super::momentum::momentum_text;
-use super::position::{position_text, yaw_text};
+use super::position::{misalignment_text, position_text, yaw_text};
 use super::solver::write_flow;
 use super::text::quoted;
 use super::wind::write_wind;
@@ -48,6 +48,7 @@ fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
     writeln!(text, "\n[[turbine]]\nname = {}", quoted(&turbine.name))?;
     writeln!(text, "model = {}\n{}", quoted(&turbine.model), position_text(turbine))?;
     text.push_str(&yaw_text(turbine));
+    text.push_str(&misalignment_text(turbine));
     // Only where it is used, so that the fingerprint of a case without it stays what it was.
     if let Some(discon) = &turbine.discon {
         writeln!(text, "discon = {}", quoted(discon))?;

@@ -81,6 +81,8 @@ const BEYOND: f64 = 0.1;
 const BIRTH: f64 = 0.15;
 /// Greatest misfit of a vortex (–).
 const MOST_MISFIT: f64 = 0.5;
+/// Least distance from the hub at which a vortex comes from a tip, not from a root (rotor diameters).
+const TIP: f64 = 0.25;
 /// Revolutions for which a vortex is followed at least (–).
 const REVOLUTIONS: f64 = 8.0;
 
@@ -216,6 +218,18 @@ fn rotor_frequency(
     Ok(averaged.rates.map(|(rotor, _)| rotor))
 }
 
+/// The tracks of vortices of the blades' tips: those of roots come at the same times, and would be taken for
+/// their neighbours.
+fn tips(found: &Found) -> Vec<Track> {
+    let setting = &found.averaged.setting;
+    let hub = setting.hub[found.cut.grid.spanned()[1]];
+    let is_tip = |track: &&Track| {
+        let [_, across] = track.sightings[0].vortex.position;
+        (across - hub).abs() >= TIP * setting.diameter
+    };
+    found.tracks.iter().filter(is_tip).cloned().collect()
+}
+
 fn follow_all(
     request: &Request,
     found: &mut Found,
@@ -234,6 +248,7 @@ fn follow_all(
         most_missed: 1,
     };
     found.tracks = follow(&found.frames, &tracking);
+    let tips = tips(found);
     let mut pairs = Pairs::All;
     if request.text(BLADES.name).is_some() {
         let n = settings::whole(request, &BLADES, 1, 3)?;
@@ -248,10 +263,10 @@ fn follow_all(
         }
         let blades = Blades { n, per_revolution: in_turn.round() as usize, line: birth };
         pairs = Pairs::Of { blades, first: pair - 1 };
-        found.blades = blades_of(&found.tracks, &blades);
+        found.blades = blades_of(&tips, &blades);
     }
     let n = found.frames.len();
-    for leapfrog in leapfrogs(&found.tracks, pairs) {
+    for leapfrog in leapfrogs(&tips, pairs) {
         let [bin, next] =
             [0, 1].map(|ahead| &found.averaged.head.bins[(leapfrog.step as usize + ahead) % n]);
         // The helix goes on between bins, by as much as from this one to the next.

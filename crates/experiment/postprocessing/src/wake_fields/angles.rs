@@ -26,6 +26,8 @@ pub(crate) struct Angles {
     rotor: Vec<f64>,
     /// Empty where there is no helix.
     helix: Vec<f64>,
+    /// Time beyond the first and the last row for which they hold, straight on (s).
+    beyond: f64,
 }
 
 impl Angles {
@@ -60,7 +62,12 @@ impl Angles {
         let helix = pitch.map_or_else(|_| Vec::new(), |pitch| of_pitch(rotor, &pitch));
         let rotor = unwrapped(rotor);
         dense(&path, &rotor, "make the run again with a shorter output.interval")?;
-        Ok(Self { times: times.to_vec(), rotor, helix })
+        // Rows are of the beginnings of steps, instants of their ends: the last one lies a row beyond.
+        let beyond = match times {
+            [.., before, last] => 1.001 * (last - before),
+            _ => 0.0,
+        };
+        Ok(Self { times: times.to_vec(), rotor, helix, beyond })
     }
 
     /// Those in the table at `path`: time, `Azimuth_deg` and, where there is one, `Helix_deg`.
@@ -100,16 +107,16 @@ impl Angles {
         });
         let (rotor, helix) = (angles.next().unwrap_or_default(), angles.next().unwrap_or_default());
         dense(path, &rotor, "give four rows a revolution at least")?;
-        Ok(Self { times, rotor, helix })
+        let beyond = 1e-6 * (times[times.len() - 1] - times[0]);
+        Ok(Self { times, rotor, helix, beyond })
     }
 
-    /// Azimuths of rotor and helix at `time` (rad), linear between rows; none beyond them.
+    /// Azimuths of rotor and helix at `time` (rad), linear between rows; none beyond where they hold.
     pub(crate) fn at(&self, time: f64) -> Option<(f64, Option<f64>)> {
         let after = self.times.partition_point(|other| *other < time);
-        let (first, last) = (self.times.first()?, self.times.last()?);
-        // Instants of a run may lie a rounding beyond its rows.
-        let slack = 1e-6 * (last - first) + 1e-9;
-        if time < first - slack || time > last + slack {
+        let [first, .., last] = &self.times[..] else { return None };
+        let rounding = 1e-9;
+        if time < first - self.beyond - rounding || time > last + self.beyond + rounding {
             return None;
         }
         let after = after.clamp(1, self.times.len() - 1);

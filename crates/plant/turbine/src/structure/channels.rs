@@ -80,8 +80,15 @@ pub fn canonical(name: &str) -> Option<String> {
     (of_blade != number.is_empty()).then(|| format!("{same}{number}"))
 }
 
-/// On return `values` holds each channel of the table in SI units (N, N m, m, rad, rad/s, m/s²).
-pub(super) fn write(loads: &Loads, yaw: f64, pitch: &[Pitch], values: &mut [f64]) {
+/// On return `values` holds each channel of the table in SI units (N, N m, m, rad, rad/s, m/s²); bearings
+/// stand at the `pitch` of their blades less the `misalignment` that blades are mounted with (rad).
+pub(super) fn write(
+    loads: &Loads,
+    yaw: f64,
+    pitch: &[Pitch],
+    misalignment: &[f64],
+    values: &mut [f64],
+) {
     let mut rest = values.iter_mut();
     let mut put = |value: f64| {
         if let Some(slot) = rest.next() {
@@ -113,8 +120,8 @@ pub(super) fn write(loads: &Loads, yaw: f64, pitch: &[Pitch], values: &mut [f64]
     }
     loads.tower_top.to_array().into_iter().for_each(&mut put);
     loads.nacelle_acceleration.to_array().into_iter().for_each(&mut put);
-    for (blade, pitch) in loads.blades.iter().zip(pitch) {
-        put(pitch.angle);
+    for ((blade, pitch), misalignment) in loads.blades.iter().zip(pitch).zip(misalignment) {
+        put(pitch.angle - misalignment);
         blade.root.force.to_array().into_iter().for_each(&mut put);
         blade.root.moment.to_array().into_iter().for_each(&mut put);
         let pitched = &blade.pitched_root;
@@ -172,7 +179,7 @@ mod tests {
         loads.blades[1].root.moment.y = 12.0;
         loads.blades[1].span_moments[N_GAUGES - 1][1] = 13.0;
         let mut values = vec![f64::NAN; table.len()];
-        write(&loads, 0.1, &[Pitch::default(); 2], &mut values);
+        write(&loads, 0.1, &[Pitch::default(); 2], &[0.0; 2], &mut values);
         assert!(values.iter().all(|value| value.is_finite()));
         let value = |name: &str| index(&table, name).map(|place| values[place]);
         assert_eq!(value("GenSpeed"), Some(2.0));

@@ -327,9 +327,11 @@ impl Structure {
         channels::index(&self.channels, name)
     }
 
-    /// On return `values` holds the channels in the middle of the last step, in SI units.
-    pub fn write_channels(&self, values: &mut [f64]) {
-        channels::write(&self.state.loads, self.state.yaw.angle, &self.state.pitch, values);
+    /// On return `values` holds the channels in the middle of the last step, in SI units; `misalignment` is
+    /// what of each blade's pitch its bearing does not show (rad).
+    pub fn write_channels(&self, misalignment: &[f64], values: &mut [f64]) {
+        let StructureState { loads, yaw, pitch, .. } = &self.state;
+        channels::write(loads, yaw.angle, pitch, misalignment, values);
     }
 
     /// Mechanical energy now.

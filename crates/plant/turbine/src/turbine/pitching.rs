@@ -42,7 +42,7 @@ impl Turbine {
         PerBlade::from_fn(after.len(), |blade| {
             let (before, after) = (before[blade], after[blade]);
             Pitch {
-                angle: 0.5 * (before.pitch + after.pitch),
+                angle: 0.5 * (before.pitch + after.pitch) + self.misalignment[blade],
                 rate: (after.pitch - before.pitch) / step,
                 acceleration: (after.rate - before.rate) / step,
             }

@@ -116,3 +116,31 @@ fn a_state_that_was_kept_goes_on_with_the_same_bits() {
     second.restore(postcard::from_bytes(&bytes).expect("the same"));
     assert_eq!(seen(&mut first, -0.6, 25), seen(&mut second, -0.6, 25));
 }
+
+/// A blade that is mounted wrong pulls as one does that is pitched so, and its bearing tells nothing of it.
+#[test]
+fn a_misaligned_blade_stands_as_if_it_were_pitched() {
+    let misalignment = PerBlade::from_fn(3, |blade| [0.0, 0.01, -0.03][blade]);
+    let mut wrong = turbine(None).misaligned(misalignment);
+    let mut right = turbine(None);
+    let winds = vec![Vector3::new(8.0, 0.0, 0.0); right.stations().len()];
+    for _ in 0..200 {
+        let commands = |pitch| Commands { pitch, generator_torque: 1e6, yaw_rate: 0.0 };
+        wrong.advance(INTERVAL, &winds, &commands(PerBlade::splat(3, 0.02)));
+        let pitched = PerBlade::from_fn(3, |blade| 0.02 + misalignment[blade]);
+        right.advance(INTERVAL, &winds, &commands(pitched));
+    }
+    let (told, beside) = (wrong.truth(20.0, INTERVAL), right.truth(20.0, INTERVAL));
+    assert!(told.pitch.iter().all(|pitch| (pitch - 0.02).abs() < 1e-9), "{:?}", told.pitch);
+    let mut channels = vec![0.0; wrong.channels().len()];
+    wrong.write_channels(&mut channels);
+    let shown = wrong.channels().iter().zip(&channels);
+    let mut bearings = shown.filter(|(channel, _)| channel.name.starts_with("BldPitch"));
+    assert!(bearings.all(|(_, pitch)| (pitch - 0.02).abs() < 1e-9));
+    assert!((told.thrust / beside.thrust - 1.0).abs() < 1e-6, "{told:?} {beside:?}");
+    for (one, other) in told.flap_moments.iter().zip(beside.flap_moments.iter()) {
+        assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    }
+    let [first, last] = [told.flap_moments[0], told.flap_moments[2]];
+    assert!((last / first - 1.0).abs() > 0.02, "an imbalance is felt: {first} {last}");
+}
