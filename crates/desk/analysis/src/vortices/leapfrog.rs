@@ -47,11 +47,12 @@ pub struct Leapfrog {
 /// Mech. 781.
 pub fn leapfrogs(tracks: &[Track], pairs: Pairs) -> Vec<Leapfrog> {
     let mut found = Vec::new();
-    for born in born(tracks) {
-        let numbers = match pairs {
-            Pairs::All => vec![None; born.len()],
-            Pairs::Of { blades, .. } => numbers(&born, &blades),
-        };
+    let born = born(tracks);
+    let numbers = match pairs {
+        Pairs::All => born.each_ref().map(|side| vec![None; side.len()]),
+        Pairs::Of { blades, .. } => numbers(&born, &blades),
+    };
+    for (born, numbers) in born.iter().zip(numbers) {
         for (pair, number) in born.windows(2).zip(numbers.windows(2)) {
             let counts = match (pairs, number) {
                 (Pairs::All, _) => true,
@@ -72,12 +73,10 @@ pub fn leapfrogs(tracks: &[Track], pairs: Pairs) -> Vec<Leapfrog> {
 /// The blade, from 0, that each of the `tracks` comes from which were born in the plane: number of the track,
 /// and the blade in the order in which vortices come after the first step.
 pub fn blades_of(tracks: &[Track], blades: &Blades) -> Vec<(usize, usize)> {
-    let of_sign = |born: Vec<&Track>| {
-        let numbers = numbers(&born, blades);
-        let pairs = born.iter().map(|track| track.id).zip(numbers);
-        pairs.filter_map(|(id, number)| Some((id, blades.of(number?)))).collect::<Vec<_>>()
-    };
-    born(tracks).into_iter().flat_map(of_sign).collect()
+    let born = born(tracks);
+    let numbers = numbers(&born, blades);
+    let pairs = born.iter().flatten().map(|track| track.id).zip(numbers.into_iter().flatten());
+    pairs.filter_map(|(id, number)| Some((id, blades.of(number?)))).collect()
 }
 
 /// The tracks that were born in the plane, of either sign, in the order in which they came.
@@ -98,19 +97,28 @@ impl Blades {
     }
 }
 
-/// Number of each of the tracks that were `born` in the order in which blades pass, whether all were seen or
-/// not; none of one that was seen once.
+/// Number of each of the tracks that were `born` of either sign, in the order in which blades pass, whether
+/// all were seen or not; none of one that was seen once.
 ///
-/// Blades pass at even intervals, after a time that the mean over all of them tells.
-fn numbers(born: &[&Track], blades: &Blades) -> Vec<Option<i64>> {
+/// Blades pass at even intervals, after a time that the mean over all of them tells. They pass the other side
+/// of the rotor half a turn later, where vortices turn the other way: one blade has one number on both.
+fn numbers(born: &[Vec<&Track>; 2], blades: &Blades) -> [Vec<Option<i64>>; 2] {
     let period = blades.per_revolution as f64 / blades.n.max(1) as f64;
-    let came: Vec<Option<f64>> = born.iter().map(|track| came_at(track, blades.line)).collect();
-    let angles = came.iter().flatten().map(|step| TAU * step / period);
+    let first =
+        |side: &Vec<&Track>| side.first().map_or(usize::MAX, |track| track.sightings[0].step);
+    let is_second_first = first(&born[1]) < first(&born[0]);
+    let half_turn = 0.5 * blades.per_revolution as f64;
+    let delays = if is_second_first { [half_turn, 0.0] } else { [0.0, half_turn] };
+    let came: [Vec<Option<f64>>; 2] = std::array::from_fn(|side| {
+        let at = |track: &&Track| came_at(track, blades.line).map(|step| step - delays[side]);
+        born[side].iter().map(at).collect()
+    });
+    let angles = came.iter().flatten().flatten().map(|step| TAU * step / period);
     let (sine, cosine) =
         angles.fold((0.0, 0.0), |(s, c), angle| (s + angle.sin(), c + angle.cos()));
     let offset = f64::atan2(sine, cosine).rem_euclid(TAU) / TAU;
     let number = |step: f64| (step / period - offset).round() as i64;
-    came.into_iter().map(|step| step.map(number)).collect()
+    came.map(|side| side.into_iter().map(|step| step.map(number)).collect())
 }
 
 /// The step at which `track` is at `line` along the first axis (m), straight through its first two sightings.

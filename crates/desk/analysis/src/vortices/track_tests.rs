@@ -130,3 +130,35 @@ fn a_cubic_comes_back_with_an_interval_that_holds_it() {
     assert!(cubic_fit(&places[..4], &exact[..4]).is_err());
     assert!(cubic_fit(&[1.0; 8], &[2.0; 8]).is_err());
 }
+
+/// Three blades pass one side, and the other half a turn later, where their vortices turn the other way.
+#[test]
+fn a_blade_has_one_number_on_both_sides() {
+    let (per_revolution, speed) = (12, 0.05);
+    let born = |blade: usize, turn: usize, side: usize| {
+        per_revolution * turn + 4 * blade + if side == 1 { 6 } else { 0 }
+    };
+    let mut frames = vec![Vec::new(); 60];
+    for (blade, turn, side) in
+        (0..3).flat_map(|blade| (0..4).flat_map(move |turn| [(blade, turn, 0), (blade, turn, 1)]))
+    {
+        let first = born(blade, turn, side);
+        for (age, frame) in frames.iter_mut().skip(first).take(8).enumerate() {
+            let vortex = vortex(speed * age as f64, 1.0 - 2.0 * side as f64);
+            let circulation = if side == 1 { 1.0 } else { -1.0 };
+            frame.push(Vortex { circulation, ..vortex });
+        }
+    }
+    let tracking =
+        Tracking { interval: 0.05, gate: 0.02, n_rounds: 1, birth: 0.01, most_missed: 0 };
+    let tracks = follow(&frames, &tracking);
+    let blades = Blades { n: 3, per_revolution, line: 0.1 };
+    let found = blades_of(&tracks, &blades);
+    assert_eq!(found.len(), 24);
+    for (id, blade) in found {
+        let track = tracks.iter().find(|track| track.id == id).unwrap();
+        let (step, side) = (track.sightings[0].step, track.sightings[0].vortex.circulation > 0.0);
+        let came = if side { step + per_revolution - 6 } else { step };
+        assert_eq!(blade, came / 4 % 3, "track {id}, first seen in frame {step}");
+    }
+}

@@ -96,9 +96,19 @@ struct Found {
     tracks: Vec<Track>,
     /// The blade of each track that was born in the plane, where blades are told.
     blades: Vec<(usize, usize)>,
-    /// Those with the azimuth of the helix (rad), where there is a helix.
-    leapfrogs: Vec<(Option<f64>, Leapfrog)>,
-    fit: Option<SineFit>,
+    leapfrogs: Vec<Passed>,
+    /// The sine through those of each side over the azimuth of the helix, which meets the sides half a turn
+    /// apart; its name of the side.
+    fits: Vec<(&'static str, SineFit)>,
+}
+
+/// A vortex that passed another.
+struct Passed {
+    /// Side of the hub: the name of the side to which the plane's second axis points, or of the other.
+    side: &'static str,
+    /// Azimuth of the helix (rad), where there is a helix.
+    azimuth: Option<f64>,
+    one: Leapfrog,
 }
 
 impl Found {
@@ -130,7 +140,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         tracks: Vec::new(),
         blades: Vec::new(),
         leapfrogs: Vec::new(),
-        fit: None,
+        fits: Vec::new(),
         averaged,
         cut,
     };
@@ -218,6 +228,23 @@ fn rotor_frequency(
     Ok(averaged.rates.map(|(rotor, _)| rotor))
 }
 
+/// Names of the sides of the hub along the plane's second axis, that to which it points first.
+fn sides(found: &Found) -> [&'static str; 2] {
+    match found.cut.grid.spanned()[1] {
+        1 => ["left", "right"],
+        _ => ["above", "below"],
+    }
+}
+
+/// The side on which track number `id` was seen first.
+fn side(found: &Found, id: usize) -> &'static str {
+    let [ahead, behind] = sides(found);
+    let hub = found.averaged.setting.hub[found.cut.grid.spanned()[1]];
+    let track = found.tracks.iter().find(|track| track.id == id);
+    let is_ahead = track.is_none_or(|track| track.sightings[0].vortex.position[1] >= hub);
+    if is_ahead { ahead } else { behind }
+}
+
 /// The tracks of vortices of the blades' tips: those of roots come at the same times, and would be taken for
 /// their neighbours.
 fn tips(found: &Found) -> Vec<Track> {
@@ -274,12 +301,16 @@ fn follow_all(
             .helix
             .zip(next.helix)
             .map(|(a, b)| wrap_to_turn(a + leapfrog.step.fract() * wrap_to_half_turn(b - a)));
-        found.leapfrogs.push((azimuth, leapfrog));
+        let side = side(found, leapfrog.ids[0]);
+        found.leapfrogs.push(Passed { side, azimuth, one: leapfrog });
     }
-    let over_helix = found.leapfrogs.iter().filter_map(|(a, one)| Some(((*a)?, one.place)));
-    let (angles, places): (Vec<f64>, Vec<f64>) =
-        over_helix.map(|(angle, place)| (angle, place - setting.hub[0])).unzip();
-    // Too few, or all at one azimuth: no sine.
-    found.fit = sine_fit(&angles, &places).ok();
+    for side in sides(found) {
+        let of_side = found.leapfrogs.iter().filter(|passed| passed.side == side);
+        let (angles, places): (Vec<f64>, Vec<f64>) = of_side
+            .filter_map(|passed| Some((passed.azimuth?, passed.one.place - setting.hub[0])))
+            .unzip();
+        // Too few, or all at one azimuth: no sine.
+        found.fits.extend(sine_fit(&angles, &places).ok().map(|fit| (side, fit)));
+    }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What was found of vortices in words and in numbers.
 
-use super::Found;
+use super::{Found, Passed};
 use crate::analyses::phases::setting_json;
 use crate::wake_fields::conditions;
 use analysis::vortices::{Track, Vortex};
@@ -59,15 +59,15 @@ pub(super) fn text(found: &Found, width: usize) -> String {
     }
     if !found.leapfrogs.is_empty() {
         let n = found.leapfrogs.len() as f64;
-        let places = || found.leapfrogs.iter().map(|(_, one)| over(one.place));
+        let places = || found.leapfrogs.iter().map(|passed| over(passed.one.place));
         let mean = places().sum::<f64>() / n;
         let deviation = (places().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
         text += &format!("{n} leapfrogs, at {mean:.3} ± {deviation:.3} D (standard deviation)\n");
     }
-    if let Some(fit) = &found.fit {
+    for (side, fit) in &found.fits {
         let [mean, amplitude, phase] = fit.half_widths;
         text += &format!(
-            "over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %\n",
+            "{side} the hub over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %\n",
             fit.mean / setting.diameter,
             mean / setting.diameter,
             fit.amplitude / setting.diameter,
@@ -129,16 +129,18 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
         let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
         json!({ "id": track.id, "born": track.is_born, "blade": blade, "sightings": sightings.collect::<Vec<_>>() })
     });
-    let leapfrogs = found.leapfrogs.iter().map(|(azimuth, one)| {
+    let leapfrogs = found.leapfrogs.iter().map(|Passed { side, azimuth, one }| {
         json!({
+            "side": side,
             "tracks": one.ids,
             "x_m": one.place,
             "step": one.step,
             "helix_azimuth_deg": azimuth.map(f64::to_degrees),
         })
     });
-    let fit = found.fit.map(|fit| {
+    let fits = found.fits.iter().map(|(side, fit)| {
         json!({
+            "side": side,
             "mean_m": fit.mean,
             "amplitude_m": fit.amplitude,
             "phase_deg": fit.phase.to_degrees(),
@@ -154,7 +156,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
         "peaks_without_a_vortex": found.n_lost,
         "tracks": tracks.collect::<Vec<_>>(),
         "leapfrogs": leapfrogs.collect::<Vec<_>>(),
-        "leapfrog_sine": fit,
+        "leapfrog_sines": fits.collect::<Vec<_>>(),
         "hub_vortex": hub.iter().map(|one| one.as_ref().map(vortex)).collect::<Vec<_>>(),
     })
 }

@@ -1,9 +1,9 @@
 //! Figures of vortices: where they are phase by phase, and where they leapfrog.
 
-use super::Found;
+use super::{Found, Passed};
 use crate::PostprocessingError;
 use crate::wake_fields::{axes, conditions, panel};
-use analysis::vortices::{Leapfrog, SineFit, Track, Vortex, cubic_fit};
+use analysis::vortices::{SineFit, Track, Vortex, cubic_fit};
 use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, Signals};
 
 /// The figures of what was `found`.
@@ -37,15 +37,15 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
         unit: "U/D".to_owned(),
         panels,
     };
-    let leapfrogs = found.fit.map(|fit| leapfrog_figure(found, &fit));
+    let leapfrogs = (!found.fits.is_empty()).then(|| leapfrog_figure(found));
     let curves = leapfrogs.into_iter().chain(strength_figure(found)).collect();
     Ok(Signals { title: "Vortices".to_owned(), maps: vec![map], curves, ..Signals::default() })
 }
 
-/// Places of leapfrogs over the azimuth of the helix, and the sine through them.
-fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
+/// Places of leapfrogs over the azimuth of the helix, and the sine through them, side by side.
+fn leapfrog_figure(found: &Found) -> CurveFigure {
     let setting = &found.averaged.setting;
-    let at = |degrees: u32| {
+    let at = |fit: &SineFit, degrees: u32| {
         let mean = fit.mean + fit.amplitude * (f64::from(degrees).to_radians() + fit.phase).sin();
         let half = fit.half_widths[0].hypot(fit.half_widths[1]);
         CurveAt {
@@ -54,26 +54,29 @@ fn leapfrog_figure(found: &Found, fit: &SineFit) -> CurveFigure {
             band_95: [(mean - half) / setting.diameter, (mean + half) / setting.diameter],
         }
     };
-    let point = |(azimuth, one): &(Option<f64>, Leapfrog)| {
+    let point = |Passed { azimuth, one, .. }: &Passed| {
         Some([(*azimuth)?.to_degrees(), (one.place - setting.hub[0]) / setting.diameter])
+    };
+    let panel = |(side, fit): &(&'static str, SineFit)| {
+        let of_side = found.leapfrogs.iter().filter(|passed| passed.side == *side);
+        CurvePanel {
+            title: format!("{side}, {} leapfrogs", fit.n),
+            points: of_side.filter_map(point).collect(),
+            curve: (0..=360).step_by(5).map(|degrees| at(fit, degrees)).collect(),
+            mark: None,
+        }
     };
     CurveFigure {
         name: "leapfrogging-over-helix-azimuth".to_owned(),
         title: "Where vortices leapfrog".to_owned(),
         caption: format!(
-            "The sine through {} leapfrogs with its interval of 95 %. {}; {}.",
-            fit.n,
+            "On either side of the hub: the sine through leapfrogs with its interval of 95 %. {}; {}.",
             conditions(setting),
             found.averaged.samples()
         ),
         along: "helix azimuth (deg)".to_owned(),
         label: "x/D".to_owned(),
-        panels: vec![CurvePanel {
-            title: String::new(),
-            points: found.leapfrogs.iter().filter_map(point).collect(),
-            curve: (0..=360).step_by(5).map(at).collect(),
-            mark: None,
-        }],
+        panels: found.fits.iter().map(panel).collect(),
     }
 }
 
