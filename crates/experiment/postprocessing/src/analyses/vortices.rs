@@ -36,7 +36,7 @@ const LEAST: AnalysisSetting = settings::setting(
     "least-vorticity",
     "D/U",
     Takes::Number,
-    "Least vorticity of a vortex, times diameter over free stream; a quarter of the greatest when left out",
+    "Least vorticity of a vortex, times diameter over free stream; when left out a quarter of the greatest, along the wind of that beyond half the rotor's radius: roots leave stronger ones than tips",
 );
 const BLADES: AnalysisSetting = settings::setting(
     "blades",
@@ -96,14 +96,17 @@ struct Found {
     tracks: Vec<Track>,
     /// The blade of each track that was born in the plane, where blades are told.
     blades: Vec<(usize, usize)>,
+    /// Of all pairs.
     leapfrogs: Vec<Passed>,
-    /// The sine through those of each side over the azimuth of the helix, which meets the sides half a turn
-    /// apart; its name of the side.
-    fits: Vec<(&'static str, SineFit)>,
+    fits: Vec<Fitted>,
+    /// The pair that counts, from 1, where blades are told.
+    pair: Option<usize>,
 }
 
 /// A vortex that passed another.
 struct Passed {
+    /// Which pair of the revolution, from 1, where blades are told.
+    pair: Option<usize>,
     /// Side of the hub: the name of the side to which the plane's second axis points, or of the other.
     side: &'static str,
     /// Azimuth of the helix (rad), where there is a helix.
@@ -111,7 +114,25 @@ struct Passed {
     one: Leapfrog,
 }
 
+/// The sine through the places of a pair on one side of the hub over the azimuth of the helix, which meets
+/// the sides half a turn apart.
+struct Fitted {
+    pair: Option<usize>,
+    side: &'static str,
+    sine: SineFit,
+}
+
 impl Found {
+    /// Leapfrogs of the pair that counts.
+    fn counted(&self) -> impl Iterator<Item = &Passed> {
+        self.leapfrogs.iter().filter(|passed| passed.pair == self.pair)
+    }
+
+    /// Their sines.
+    fn sines(&self) -> impl Iterator<Item = &Fitted> {
+        self.fits.iter().filter(|fitted| fitted.pair == self.pair)
+    }
+
     /// Whether the plane lies along the wind.
     fn is_along(&self) -> bool {
         self.cut.grid.n_points[0] > 1
@@ -141,6 +162,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         blades: Vec::new(),
         leapfrogs: Vec::new(),
         fits: Vec::new(),
+        pair: None,
         averaged,
         cut,
     };
@@ -185,7 +207,7 @@ fn least(request: &Request, averaged: &Averaged, cut: &Cut) -> Result<f64, Postp
     if request.number(LEAST.name).is_some() {
         return Ok(settings::positive(request, &LEAST, 1.0)? * unit);
     }
-    let mut greatest = 0.0_f64;
+    let (mut greatest, mut of_tips) = (0.0_f64, 0.0_f64);
     let area = search(averaged, cut, 0.0).within;
     for index in 0..averaged.head.bins.len() {
         let section = section(averaged, cut, index)?;
@@ -194,10 +216,22 @@ fn least(request: &Request, averaged: &Averaged, cut: &Cut) -> Result<f64, Postp
             let is_in = (0..2).all(|a| (area[a][0]..=area[a][1]).contains(&at[a]));
             if is_in && vorticity.is_finite() {
                 greatest = greatest.max(vorticity.abs());
+                if is_of_a_tip(averaged, cut, at) {
+                    of_tips = of_tips.max(vorticity.abs());
+                }
             }
         }
     }
-    Ok(0.25 * greatest)
+    // Fields about the hub alone show no tips.
+    Ok(0.25 * if of_tips > 0.0 { of_tips } else { greatest })
+}
+
+/// Whether what is at `place` in a plane along the wind can come from the tip of a blade; anything in one
+/// across it.
+fn is_of_a_tip(averaged: &Averaged, cut: &Cut, place: [f64; 2]) -> bool {
+    let [along, across] = [0, 1].map(|axis| cut.grid.spanned()[axis]);
+    let setting = &averaged.setting;
+    along != 0 || (place[1] - setting.hub[across]).abs() >= TIP * setting.diameter
 }
 
 fn search(averaged: &Averaged, cut: &Cut, least_vorticity: f64) -> Search {
@@ -248,11 +282,8 @@ fn side(found: &Found, id: usize) -> &'static str {
 /// The tracks of vortices of the blades' tips: those of roots come at the same times, and would be taken for
 /// their neighbours.
 fn tips(found: &Found) -> Vec<Track> {
-    let setting = &found.averaged.setting;
-    let hub = setting.hub[found.cut.grid.spanned()[1]];
     let is_tip = |track: &&Track| {
-        let [_, across] = track.sightings[0].vortex.position;
-        (across - hub).abs() >= TIP * setting.diameter
+        is_of_a_tip(&found.averaged, &found.cut, track.sightings[0].vortex.position)
     };
     found.tracks.iter().filter(is_tip).cloned().collect()
 }
@@ -262,7 +293,7 @@ fn follow_all(
     found: &mut Found,
     frequency: f64,
 ) -> Result<(), PostprocessingError> {
-    let setting = found.averaged.setting.clone();
+    let setting = &found.averaged.setting;
     let in_turn = TAU / found.averaged.head.rotor_width;
     let start = found.search(found.least).within[0][0];
     let rounds = (REVOLUTIONS * in_turn / found.frames.len() as f64).ceil() as usize + 1;
@@ -276,41 +307,49 @@ fn follow_all(
     };
     found.tracks = follow(&found.frames, &tracking);
     let tips = tips(found);
-    let mut pairs = Pairs::All;
-    if request.text(BLADES.name).is_some() {
-        let n = settings::whole(request, &BLADES, 1, 3)?;
-        let pair = settings::whole(request, &PAIR, 1, 1)?;
-        if pair > n {
-            return Err(PostprocessingError::Setting {
-                setting: PAIR.name,
-                given: pair.to_string(),
-                expected: "a number up to that of the blades is expected",
-                fix: "write such as 1",
-            });
-        }
-        let blades = Blades { n, per_revolution: in_turn.round() as usize, line: birth };
-        pairs = Pairs::Of { blades, first: pair - 1 };
-        found.blades = blades_of(&tips, &blades);
+    if request.text(BLADES.name).is_none() {
+        take(found, &tips, None, Pairs::All);
+        return Ok(());
     }
-    let n = found.frames.len();
-    for leapfrog in leapfrogs(&tips, pairs) {
+    let n = settings::whole(request, &BLADES, 1, 3)?;
+    let pair = settings::whole(request, &PAIR, 1, 1)?;
+    if pair > n {
+        return Err(PostprocessingError::Setting {
+            setting: PAIR.name,
+            given: pair.to_string(),
+            expected: "a number up to that of the blades is expected",
+            fix: "write such as 1",
+        });
+    }
+    let blades = Blades { n, per_revolution: in_turn.round() as usize, line: birth };
+    found.blades = blades_of(&tips, &blades);
+    found.pair = Some(pair);
+    for pair in 1..=n {
+        take(found, &tips, Some(pair), Pairs::Of { blades, first: pair - 1 });
+    }
+    Ok(())
+}
+
+/// Takes in where `pairs` of the tracks `tips` leapfrog, which are pair number `pair` of a revolution.
+fn take(found: &mut Found, tips: &[Track], pair: Option<usize>, pairs: Pairs) {
+    let (n, hub) = (found.frames.len(), found.averaged.setting.hub[0]);
+    let mut taken = Vec::new();
+    for one in leapfrogs(tips, pairs) {
         let [bin, next] =
-            [0, 1].map(|ahead| &found.averaged.head.bins[(leapfrog.step as usize + ahead) % n]);
+            [0, 1].map(|ahead| &found.averaged.head.bins[(one.step as usize + ahead) % n]);
         // The helix goes on between bins, by as much as from this one to the next.
         let azimuth = bin
             .helix
             .zip(next.helix)
-            .map(|(a, b)| wrap_to_turn(a + leapfrog.step.fract() * wrap_to_half_turn(b - a)));
-        let side = side(found, leapfrog.ids[0]);
-        found.leapfrogs.push(Passed { side, azimuth, one: leapfrog });
+            .map(|(a, b)| wrap_to_turn(a + one.step.fract() * wrap_to_half_turn(b - a)));
+        taken.push(Passed { pair, side: side(found, one.ids[0]), azimuth, one });
     }
     for side in sides(found) {
-        let of_side = found.leapfrogs.iter().filter(|passed| passed.side == side);
-        let (angles, places): (Vec<f64>, Vec<f64>) = of_side
-            .filter_map(|passed| Some((passed.azimuth?, passed.one.place - setting.hub[0])))
-            .unzip();
+        let of_side = taken.iter().filter(|passed| passed.side == side);
+        let (angles, places): (Vec<f64>, Vec<f64>) =
+            of_side.filter_map(|passed| Some((passed.azimuth?, passed.one.place - hub))).unzip();
         // Too few, or all at one azimuth: no sine.
-        found.fits.extend(sine_fit(&angles, &places).ok().map(|fit| (side, fit)));
+        found.fits.extend(sine_fit(&angles, &places).ok().map(|sine| Fitted { pair, side, sine }));
     }
-    Ok(())
+    found.leapfrogs.extend(taken);
 }

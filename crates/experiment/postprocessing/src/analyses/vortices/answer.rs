@@ -1,6 +1,6 @@
 //! What was found of vortices in words and in numbers.
 
-use super::{Found, Passed};
+use super::{Fitted, Found, Passed};
 use crate::analyses::phases::setting_json;
 use crate::wake_fields::conditions;
 use analysis::vortices::{Track, Vortex};
@@ -57,14 +57,14 @@ pub(super) fn text(found: &Found, width: usize) -> String {
     if !found.is_along() {
         text += &hub_text(found);
     }
-    if !found.leapfrogs.is_empty() {
-        let n = found.leapfrogs.len() as f64;
-        let places = || found.leapfrogs.iter().map(|passed| over(passed.one.place));
+    if found.counted().next().is_some() {
+        let n = found.counted().count() as f64;
+        let places = || found.counted().map(|passed| over(passed.one.place));
         let mean = places().sum::<f64>() / n;
         let deviation = (places().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
         text += &format!("{n} leapfrogs, at {mean:.3} ± {deviation:.3} D (standard deviation)\n");
     }
-    for (side, fit) in &found.fits {
+    for Fitted { side, sine: fit, .. } in found.sines() {
         let [mean, amplitude, phase] = fit.half_widths;
         text += &format!(
             "{side} the hub over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %\n",
@@ -119,6 +119,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "position_m": vortex.position,
             "circulation_m2_s": vortex.circulation,
             "core_radius_m": vortex.core_radius,
+            "peak_vorticity_1_s": vortex.peak_vorticity(),
             "misfit": vortex.misfit,
         })
     };
@@ -129,8 +130,9 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
         let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
         json!({ "id": track.id, "born": track.is_born, "blade": blade, "sightings": sightings.collect::<Vec<_>>() })
     });
-    let leapfrogs = found.leapfrogs.iter().map(|Passed { side, azimuth, one }| {
+    let leapfrogs = found.leapfrogs.iter().map(|Passed { pair, side, azimuth, one }| {
         json!({
+            "pair": pair,
             "side": side,
             "tracks": one.ids,
             "x_m": one.place,
@@ -138,8 +140,9 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "helix_azimuth_deg": azimuth.map(f64::to_degrees),
         })
     });
-    let fits = found.fits.iter().map(|(side, fit)| {
+    let fits = found.fits.iter().map(|Fitted { pair, side, sine: fit }| {
         json!({
+            "pair": pair,
             "side": side,
             "mean_m": fit.mean,
             "amplitude_m": fit.amplitude,

@@ -1,6 +1,6 @@
 //! Figures of vortices: where they are phase by phase, and where they leapfrog.
 
-use super::{Found, Passed};
+use super::{Fitted, Found, Passed};
 use crate::PostprocessingError;
 use crate::wake_fields::{axes, conditions, panel};
 use analysis::vortices::{SineFit, Track, Vortex, cubic_fit};
@@ -37,7 +37,7 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
         unit: "U/D".to_owned(),
         panels,
     };
-    let leapfrogs = (!found.fits.is_empty()).then(|| leapfrog_figure(found));
+    let leapfrogs = found.sines().next().is_some().then(|| leapfrog_figure(found));
     let curves = leapfrogs.into_iter().chain(strength_figure(found)).collect();
     Ok(Signals { title: "Vortices".to_owned(), maps: vec![map], curves, ..Signals::default() })
 }
@@ -57,8 +57,8 @@ fn leapfrog_figure(found: &Found) -> CurveFigure {
     let point = |Passed { azimuth, one, .. }: &Passed| {
         Some([(*azimuth)?.to_degrees(), (one.place - setting.hub[0]) / setting.diameter])
     };
-    let panel = |(side, fit): &(&'static str, SineFit)| {
-        let of_side = found.leapfrogs.iter().filter(|passed| passed.side == *side);
+    let panel = |Fitted { side, sine: fit, .. }: &Fitted| {
+        let of_side = found.counted().filter(|passed| passed.side == *side);
         CurvePanel {
             title: format!("{side}, {} leapfrogs", fit.n),
             points: of_side.filter_map(point).collect(),
@@ -76,7 +76,7 @@ fn leapfrog_figure(found: &Found) -> CurveFigure {
         ),
         along: "helix azimuth (deg)".to_owned(),
         label: "x/D".to_owned(),
-        panels: found.fits.iter().map(panel).collect(),
+        panels: found.sines().map(panel).collect(),
     }
 }
 
