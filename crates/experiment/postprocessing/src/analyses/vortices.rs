@@ -2,7 +2,7 @@
 
 mod answer;
 mod cut;
-mod figures;
+pub(crate) mod figures;
 mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
@@ -81,11 +81,14 @@ const BEYOND: f64 = 0.1;
 const BIRTH: f64 = 0.15;
 /// Greatest misfit of a vortex (–).
 const MOST_MISFIT: f64 = 0.5;
+/// That vortices are not followed, and why.
+const NOT_FOLLOWED: &str =
+    "vortices are not followed: the rotor's frequency is not known (--rotor-hz)";
 /// Revolutions for which a vortex is followed at least (–).
 const REVOLUTIONS: f64 = 8.0;
 
 /// What was found in all bins.
-struct Found {
+pub(crate) struct Found {
     averaged: Averaged,
     cut: Cut,
     frames: Vec<Vec<Vortex>>,
@@ -97,9 +100,50 @@ struct Found {
     /// Those with the azimuth of the helix (rad), where there is a helix.
     leapfrogs: Vec<(Option<f64>, Leapfrog)>,
     fit: Option<SineFit>,
+    /// What must be said.
+    remarks: Vec<String>,
 }
 
 impl Found {
+    /// The vortices in the fields of `averaged`, as `request` asks for them.
+    ///
+    /// # Errors
+    /// [`PostprocessingError`].
+    pub(crate) fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
+        let cut = Cut::of(&averaged)?;
+        let least = least(request, &averaged, &cut)?;
+        let mut found = Self {
+            frames: Vec::new(),
+            n_lost: 0,
+            least,
+            tracks: Vec::new(),
+            blades: Vec::new(),
+            leapfrogs: Vec::new(),
+            fit: None,
+            remarks: averaged.remarks.clone(),
+            averaged,
+            cut,
+        };
+        for index in 0..found.averaged.head.bins.len() {
+            let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
+            found.frames.push(vortices);
+            found.n_lost += n_lost;
+        }
+        if found.is_along() {
+            match rotor_frequency(request, &found.averaged)? {
+                Some(frequency) => follow_all(request, &mut found, frequency)?,
+                None => found.remarks.push(NOT_FOLLOWED.to_owned()),
+            }
+        }
+        if found.n_lost > 0 {
+            found.remarks.push(format!(
+                "{} peaks of vorticity were no vortex: their fit did not settle",
+                found.n_lost
+            ));
+        }
+        Ok(found)
+    }
+
     /// Whether the plane lies along the wind.
     fn is_along(&self) -> bool {
         self.cut.grid.n_points[0] > 1
@@ -118,41 +162,8 @@ impl Found {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let averaged = Averaged::of(request)?;
-    let cut = Cut::of(&averaged)?;
-    let least = least(request, &averaged, &cut)?;
-    let mut found = Found {
-        frames: Vec::new(),
-        n_lost: 0,
-        least,
-        tracks: Vec::new(),
-        blades: Vec::new(),
-        leapfrogs: Vec::new(),
-        fit: None,
-        averaged,
-        cut,
-    };
-    for index in 0..found.averaged.head.bins.len() {
-        let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
-        found.frames.push(vortices);
-        found.n_lost += n_lost;
-    }
-    let mut remarks = found.averaged.remarks.clone();
-    if found.is_along() {
-        match rotor_frequency(request, &found.averaged)? {
-            Some(frequency) => follow_all(request, &mut found, frequency)?,
-            None => remarks.push(
-                "vortices are not followed: the rotor's frequency is not known (--rotor-hz)"
-                    .to_owned(),
-            ),
-        }
-    }
-    if found.n_lost > 0 {
-        remarks.push(format!(
-            "{} peaks of vorticity were no vortex: their fit did not settle",
-            found.n_lost
-        ));
-    }
+    let found = Found::of(request, Averaged::of(request)?)?;
+    let mut remarks = found.remarks.clone();
     let (surface, told) = surfaces::made(request, &found)?;
     remarks.extend(told);
     let mut signals = figures::signals(&found)?;

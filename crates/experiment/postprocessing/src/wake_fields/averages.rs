@@ -203,6 +203,20 @@ impl Averaged {
             self.head.span[1]
         )
     }
+
+    /// Samples behind them in words, with the bin that has fewest and those that are empty.
+    pub(crate) fn counts(&self) -> String {
+        let bins = &self.head.bins;
+        let fewest = (0..bins.len()).min_by_key(|index| bins[*index].n_instants);
+        let mut text = self.samples();
+        if let (Some(index), true) = (fewest, bins.len() > 1) {
+            text += &format!(", fewest in bin {index} ({})", self.name_of_bin(index));
+        }
+        match empty_bins(&self.head).first() {
+            Some(empty) => format!("{text}; {empty}"),
+            None => format!("{text}; no bin is empty"),
+        }
+    }
 }
 
 /// Which bins are empty, in words.
