@@ -114,7 +114,7 @@ fn averages_by_phase_are_on_the_page_with_their_samples_runs_beside_each_other()
         }
     }
     let page = page(&output);
-    let samples = figure(&page, "phases-samples-wake");
+    let samples = figure(&page, "phases-samples-discs-wake");
     assert!(samples.contains("1 of 12 bins are empty and count in no average: 0"), "{samples}");
     assert!(samples.contains("60 bins of ") && samples.contains("no bin is empty"), "{samples}");
     for run in ["baseline", "helix"] {

@@ -7,11 +7,11 @@ mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
-use crate::wake_fields::Averaged;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
     WIND_SPEED, ZEROS,
 };
+use crate::wake_fields::{Averaged, shown};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
@@ -87,7 +87,7 @@ const NOT_FOLLOWED: &str =
 /// Revolutions for which a vortex is followed at least (–).
 const REVOLUTIONS: f64 = 8.0;
 
-/// What was found in all bins.
+/// What was found in the bins.
 pub(crate) struct Found {
     averaged: Averaged,
     cut: Cut,
@@ -109,7 +109,42 @@ impl Found {
     ///
     /// # Errors
     /// [`PostprocessingError`].
-    pub(crate) fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
+    fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
+        let mut found = Self::sought(request, averaged, |_| true)?;
+        if found.is_along() {
+            match rotor_frequency(request, &found.averaged)? {
+                Some(frequency) => follow_all(request, &mut found, frequency)?,
+                None => found.remarks.push(NOT_FOLLOWED.to_owned()),
+            }
+        }
+        if found.n_lost > 0 {
+            found.remarks.push(format!(
+                "{} peaks of vorticity were no vortex: their fit did not settle",
+                found.n_lost
+            ));
+        }
+        Ok(found)
+    }
+
+    /// The vortices in those bins of `averaged` that figures of velocity show, which takes a fraction of the
+    /// time; they are not followed.
+    ///
+    /// # Errors
+    /// [`PostprocessingError`].
+    pub(crate) fn in_some(
+        request: &Request,
+        averaged: Averaged,
+    ) -> Result<Self, PostprocessingError> {
+        let shown = shown(&averaged.head);
+        Self::sought(request, averaged, |index| shown.contains(&index))
+    }
+
+    /// The vortices in those bins of `averaged` that are `wanted`.
+    fn sought(
+        request: &Request,
+        averaged: Averaged,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Result<Self, PostprocessingError> {
         let cut = Cut::of(&averaged)?;
         let least = least(request, &averaged, &cut)?;
         let mut found = Self {
@@ -125,21 +160,12 @@ impl Found {
             cut,
         };
         for index in 0..found.averaged.head.bins.len() {
-            let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
+            let (vortices, n_lost) = match wanted(index) {
+                true => vortices(&found.section(index)?, &found.search(least)),
+                false => (Vec::new(), 0),
+            };
             found.frames.push(vortices);
             found.n_lost += n_lost;
-        }
-        if found.is_along() {
-            match rotor_frequency(request, &found.averaged)? {
-                Some(frequency) => follow_all(request, &mut found, frequency)?,
-                None => found.remarks.push(NOT_FOLLOWED.to_owned()),
-            }
-        }
-        if found.n_lost > 0 {
-            found.remarks.push(format!(
-                "{} peaks of vorticity were no vortex: their fit did not settle",
-                found.n_lost
-            ));
         }
         Ok(found)
     }

@@ -193,6 +193,11 @@ impl Averaged {
     pub(crate) fn samples(&self) -> String {
         let counts = || self.head.bins.iter().map(|bin| bin.n_instants);
         let n_bins = self.head.bins.len();
+        if n_bins == 1 {
+            let [from, to] = self.head.span;
+            let n: u64 = counts().sum();
+            return format!("{n} instants, {from:.1} to {to:.1} s");
+        }
         format!(
             "{} bins of {} to {} instants, {:.0} on the average, {:.1} to {:.1} s",
             n_bins,

@@ -59,14 +59,14 @@ pub(crate) fn by_phase(
     let mut panels = Vec::from_iter(map("mean".to_owned(), &averaged.head.all, Vec::new()));
     for index in shown(&averaged.head) {
         let n = averaged.head.bins[index].n_instants;
-        let title = format!("{}: {n} instants", averaged.name_of_bin(index));
+        let title = format!("{}, n = {n}", averaged.name_of_bin(index));
         panels.extend(map(title, &averaged.bin(index)?, marks(index)));
     }
     Ok(MapFigure {
         name: "phases-velocity".to_owned(),
         title: "Velocity along the wind by phase".to_owned(),
         caption: format!(
-            "u over the free stream: mean over all instants, and means of bins. {}; {}.",
+            "u over the free stream: mean over all instants, and means of bins of n instants. {}; {}.",
             conditions(setting),
             averaged.samples()
         ),
@@ -89,7 +89,7 @@ pub(crate) fn velocity_by_phase(averaged: &Averaged) -> Result<MapFigure, Postpr
 
 /// Numbers of the bins that a figure shows, spread over a cycle of the helix, or else a revolution; none of
 /// them empty.
-fn shown(head: &PhaseAverages) -> Vec<usize> {
+pub(crate) fn shown(head: &PhaseAverages) -> Vec<usize> {
     let n = head.bins.len();
     if n < 2 {
         return Vec::new();

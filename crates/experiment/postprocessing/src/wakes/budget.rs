@@ -17,6 +17,8 @@ const MOST_VALUES: usize = 20_000_000;
 pub(super) struct Budgets {
     tracks: Vec<TrackFigure>,
     notes: Vec<String>,
+    /// What must be said of several, and of which.
+    told: Vec<(String, Vec<String>)>,
 }
 
 impl Budgets {
@@ -52,8 +54,13 @@ impl Budgets {
                     figure.name = format!("{}-{field}-{}", figure.name, run.name());
                     self.tracks.push(figure);
                 }
-                let told = |note| format!("{}, {field}: {note}", run.name());
-                self.notes.extend(found.notes.into_iter().map(told));
+                for note in found.notes {
+                    let of = format!("{}, {field}", run.name());
+                    match self.told.iter_mut().find(|(other, _)| *other == note) {
+                        Some((_, all)) => all.push(of),
+                        None => self.told.push((note, vec![of])),
+                    }
+                }
             }
             Err(error) => self.notes.push(run.told(&error)),
         }
@@ -61,12 +68,13 @@ impl Budgets {
 
     /// The part of the page.
     pub(super) fn signals(self) -> Signals {
+        let told = self.told.into_iter().map(|(note, of)| format!("{}: {note}", of.join("; ")));
         Signals {
             title: "Budget of the wake".to_owned(),
             lead: "Mean kinetic energy that boxes about the hub, one behind the other, gain and lose; in U³D²."
                 .to_owned(),
             tracks: self.tracks,
-            notes: self.notes,
+            notes: told.chain(self.notes).collect(),
             ..Signals::default()
         }
     }

@@ -1,18 +1,17 @@
-//! The wake by phase: samples of the bins, velocity with tip vortices, where those leapfrog.
+//! The wake by phase: samples of the bins, and velocity with tip vortices.
 
 use super::kept::{Kept, Run};
 use crate::PostprocessingError;
 use crate::analyses::phases::figures::{samples, samples_row};
 use crate::analyses::vortices::Found;
-use crate::analyses::vortices::figures::{curves, velocity};
+use crate::analyses::vortices::figures::velocity;
 use crate::wake_fields::conditions;
-use report::{CurveFigure, MapFigure, Signals, TrackRow};
+use report::{MapFigure, Signals, TrackRow};
 
 /// What was found run by run.
 #[derive(Default)]
 pub(super) struct ByPhase {
     maps: Vec<MapFigure>,
-    curves: Vec<CurveFigure>,
     /// Of each output that averages.
     samples: Vec<Samples>,
     /// What must be said.
@@ -56,34 +55,35 @@ impl ByPhase {
 
     fn take_wake(&mut self, run: &Run, kept: Kept) -> Result<(), PostprocessingError> {
         let Kept { field, request, averaged, .. } = kept;
-        let found = Found::of(&request, averaged)?;
-        let (of, place) = (format!("{}, {field}", run.name()), format!("{field}-{}", run.name()));
-        let mut map = velocity(&found)?;
-        (map.title, map.name) = (format!("{}: {of}", map.title), format!("{}-{place}", map.name));
+        let mut map = velocity(&Found::in_some(&request, averaged)?)?;
+        map.title = format!("{}: {}, {field}", map.title, run.name());
+        map.name = format!("{}-{field}-{}", map.name, run.name());
         self.maps.push(map);
-        for mut curve in curves(&found) {
-            (curve.title, curve.name) =
-                (format!("{}: {of}", curve.title), format!("{}-{place}", curve.name));
-            self.curves.push(curve);
-        }
         Ok(())
     }
 
     /// The part of the page.
     pub(super) fn signals(self) -> Signals {
-        let figure = |one: Samples| {
+        let figure = |(outputs, one): (Vec<String>, Samples)| {
             let mut figure = samples(one.rows, &one.told.join(" "));
-            figure.title = format!("{}: {}", figure.title, one.output);
-            figure.name = format!("{}-{}", figure.name, one.output);
+            figure.title = format!("{}: {}", figure.title, outputs.join(", "));
+            figure.name = format!("{}-{}", figure.name, outputs.join("-"));
             figure
         };
+        // Outputs with the same bins have the same samples.
+        let mut alike: Vec<(Vec<String>, Samples)> = Vec::new();
+        for one in self.samples {
+            match alike.iter_mut().find(|(_, other)| other.told == one.told) {
+                Some((outputs, _)) => outputs.push(one.output),
+                None => alike.push((vec![one.output.clone()], one)),
+            }
+        }
         Signals {
             title: "The wake by phase".to_owned(),
-            lead: "Velocity averaged in the run by the azimuths of rotor and helix. Lengths are in rotor diameters from the hub."
+            lead: "Velocity averaged in the run by the azimuths of rotor and helix. Lengths are in rotor diameters from the hub. wakemix analyse vortices follows vortices from bin to bin."
                 .to_owned(),
             maps: self.maps,
-            curves: self.curves,
-            tracks: self.samples.into_iter().map(figure).collect(),
+            tracks: alike.into_iter().map(figure).collect(),
             notes: self.notes,
             ..Signals::default()
         }

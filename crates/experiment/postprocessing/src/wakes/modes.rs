@@ -26,7 +26,7 @@ pub(super) fn of_run(run: &Run, records: &RunRecords) -> Option<Signals> {
         ..Signals::default()
     };
     Some(match found(run, field) {
-        Ok(found) => Signals { title: part.title, lead: part.lead, ..named(run, found) },
+        Ok(found) => Signals { title: part.title, lead: part.lead, ..named(run, field, found) },
         Err(note) => Signals { notes: vec![note], ..part },
     })
 }
@@ -48,13 +48,13 @@ fn found(run: &Run, field: &str) -> Result<Signals, String> {
     shown(&request).map_err(told)
 }
 
-/// `found` with the name of the run in those of its figures.
-fn named(run: &Run, mut found: Signals) -> Signals {
-    for map in &mut found.maps {
-        map.name = format!("{}-{}", map.name, run.name());
-    }
-    for density in &mut found.densities {
-        density.name = format!("{}-{}", density.name, run.name());
+/// `found` with the name of the run, and of the `field`, in names and titles of its figures.
+fn named(run: &Run, field: &str, mut found: Signals) -> Signals {
+    let maps = found.maps.iter_mut().map(|map| (&mut map.name, &mut map.title));
+    let densities = found.densities.iter_mut().map(|one| (&mut one.name, &mut one.title));
+    for (name, title) in maps.chain(densities) {
+        *name = format!("{name}-{}", run.name());
+        *title = format!("{title}: {}, {field}", run.name());
     }
     found
 }

@@ -59,13 +59,17 @@ pub(crate) fn velocity(found: &Found) -> Result<MapFigure, PostprocessingError> 
         u
     };
     let mut map = by_phase(&found.averaged, &found.cut.grid, downwind, |bin| marks(found, bin))?;
-    map.caption = format!("Marked: vortices that were fitted. {}", map.caption);
+    let n_marked: usize = map.panels.iter().map(|panel| panel.points.len()).sum();
+    map.caption = match n_marked {
+        0 => format!("No vortex was found in these bins. {}", map.caption),
+        n => format!("Marked: {n} vortices that were fitted. {}", map.caption),
+    };
     Ok(map)
 }
 
 /// Where vortices leapfrog over the azimuth of the helix, and how strong they are over the distance, where
 /// enough of them were followed.
-pub(crate) fn curves(found: &Found) -> Vec<CurveFigure> {
+fn curves(found: &Found) -> Vec<CurveFigure> {
     let leapfrogs = found.fit.map(|fit| leapfrog_figure(found, &fit));
     leapfrogs.into_iter().chain(strength_figure(found)).collect()
 }

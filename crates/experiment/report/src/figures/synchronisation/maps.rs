@@ -12,15 +12,19 @@ use std::collections::BTreeMap;
 
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 84.0;
-const GAP: [f64; 2] = [34.0, 66.0];
+const GAP: [f64; 2] = [46.0, 66.0];
 const HEIGHT: f64 = 230.0;
 /// Panels in a row at most.
 const MOST: usize = 3;
-/// Length over height from which panels that are to scale stand in rows of two (–).
-const WIDE: f64 = 1.5;
+/// Length over height from which panels that are to scale stand in rows of two (–), and such with points.
+const WIDE: f64 = 3.0;
+const WIDE_WITH_POINTS: f64 = 1.5;
 /// Height of such a panel at most, and of the bar of colours at least.
 const MOST_HEIGHT: f64 = 420.0;
 const LEAST_BAR: f64 = 120.0;
+/// Room of a number beside the bar of colours, and how many there are at most (–).
+const TICK: f64 = 30.0;
+const MOST_TICKS: usize = 6;
 /// Contour lines, about.
 const N_LEVELS: usize = 10;
 
@@ -102,8 +106,10 @@ pub(super) fn maps(figure: &MapFigure) -> Option<Figure> {
             frame.y_label(&figure.along[1], 46.0, &mut shapes);
         }
     }
-    let bar = [WIDTH - RIGHT + 22.0, 42.0, 14.0, panel_height.max(LEAST_BAR) - 8.0];
-    colour_bar(bar, range, figure.colours.map(), 6, &figure.unit, &mut shapes);
+    let bar_height = panel_height.max(LEAST_BAR) - 8.0;
+    let n_ticks = ((bar_height / TICK) as usize).min(MOST_TICKS);
+    let bar = [WIDTH - RIGHT + 22.0, 42.0, 14.0, bar_height];
+    colour_bar(bar, range, figure.colours.map(), n_ticks, &figure.unit, &mut shapes);
     let n_rows = figure.panels.len().div_ceil(n_columns);
     Some(Figure {
         name: figure.name.clone(),
@@ -201,8 +207,9 @@ fn layout(figure: &MapFigure) -> (usize, [f64; 2]) {
     }
     let length = |places: &Vec<f64>| places[places.len() - 1] - places[0];
     let [along, up] = figure.panels[0].places.each_ref().map(length);
-    // Wide panels beside each other would be too low to see anything.
-    let most = if along > WIDE * up { 2 } else { MOST };
+    // Wide panels in rows of three would be too low to see anything, and marks would hide what is in them.
+    let has_points = figure.panels.iter().any(|panel| !panel.points.is_empty());
+    let most = if along > if has_points { WIDE_WITH_POINTS } else { WIDE } * up { 2 } else { MOST };
     let n_columns = n.min(most);
     let width = width(n_columns).min(MOST_HEIGHT * along / up);
     (n_columns, [width, width * up / along])
