@@ -31,8 +31,10 @@ fn study() -> (TempDir, PathBuf) {
     (folder, output)
 }
 
+/// The page of the study in `output`, slashes as they are seen.
 fn page(output: &Path) -> String {
-    fs::read_to_string(postprocessing::report(output).expect("a report").page).expect("the page")
+    let path = postprocessing::report(output).expect("a report").page;
+    fs::read_to_string(path).expect("the page").replace("&#x2f;", "/")
 }
 
 /// u and w at `place` (m) and `time` (s): waves of the helix that carry energy out of the wake up to [`TURN`],

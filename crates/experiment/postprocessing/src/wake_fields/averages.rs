@@ -54,12 +54,18 @@ impl Averaged {
         file: PathBuf,
     ) -> Result<Self, PostprocessingError> {
         let is_of_run = file != request.run();
-        let rates = match is_of_run {
-            true => Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name))?
-                .rates(stored.head.span),
-            false => None,
-        };
         let mut remarks = empty_bins(&stored.head);
+        let mut rates = None;
+        if is_of_run {
+            match Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name)) {
+                Ok(angles) => rates = angles.rates(stored.head.span),
+                // Of averages that are made the azimuths are known; how fast they grow need not be.
+                Err(error @ PostprocessingError::Fields { .. }) => {
+                    remarks.push(format!("how fast rotor and helix turned is not known: {error}"));
+                }
+                Err(error) => return Err(error),
+            }
+        }
         if is_of_run && request.text(FIELD.name).is_none() {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             remarks.push(format!("averages of {name}; --field names other planes of the run"));

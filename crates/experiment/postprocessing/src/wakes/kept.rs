@@ -50,7 +50,9 @@ impl Run<'_> {
         if let Some(fix) = error.help() {
             text += &format!("; {fix}");
         }
-        text.replace(&format!("{}/", self.study.display()), "")
+        // With a slash at its end.
+        let study = self.study.join("").display().to_string();
+        text.replace(&study, "")
     }
 
     /// That `what` of `field` are not on the page because there are `how_many`, and the command that draws them.

@@ -325,6 +325,30 @@ mod tests {
         assert!(contours(&bowl(), 3.0).is_empty());
     }
 
+    /// 4 along and 2 up: three beside each other, or two with points, none of them stretched.
+    #[test]
+    fn maps_to_scale_are_not_stretched_and_leave_room_for_points() {
+        let places = [vec![0.0, 4.0], vec![-1.0, 1.0]];
+        let panel = MapPanel { places, values: vec![2.0, 3.0, 4.0, 5.0], ..MapPanel::default() };
+        let figure = |points: Vec<[f64; 2]>| MapFigure {
+            colours: MapColours::FromLeast,
+            is_to_scale: true,
+            has_lines: false,
+            name: "map".into(),
+            title: String::new(),
+            caption: String::new(),
+            along: ["x".into(), "y".into()],
+            unit: "U".into(),
+            panels: vec![MapPanel { points, ..panel.clone() }; 3],
+        };
+        assert_eq!(range(&figure(Vec::new())), [2.0, 5.0]);
+        for (points, expected) in [(Vec::new(), 3), (vec![[1.0, 0.0]], 2)] {
+            let (n_columns, [width, height]) = layout(&figure(points));
+            assert_eq!(n_columns, expected);
+            assert!((width / height - 2.0).abs() < 1e-12);
+        }
+    }
+
     #[test]
     fn a_map_reads_its_own_values_and_holds_no_broken_panel() {
         let panel = bowl();

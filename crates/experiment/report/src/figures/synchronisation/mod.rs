@@ -279,7 +279,7 @@ pub struct Signals {
     pub tracks: Vec<TrackFigure>,
     /// Their densities over frequency.
     pub densities: Vec<DensityFigure>,
-    /// What must be said below, such as why something is not shown.
+    /// What must be said below, on the page of a study, such as why something is not shown.
     pub notes: Vec<String>,
 }
 
