@@ -37,8 +37,8 @@ fn page(output: &Path) -> String {
     fs::read_to_string(path).expect("the page").replace("&#x2f;", "/")
 }
 
-/// u and w at `place` (m) and `time` (s): waves of the helix that carry energy out of the wake up to [`TURN`],
-/// and into it from there.
+/// u and w at `place` (m) and `time` (s): waves of the helix that carry energy out of the wake up to
+/// [`TURN`], and into it from there.
 fn wake([x, _, z]: [f64; 3], time: f64) -> [f32; 3] {
     let wave = (TAU * ROTOR_HZ / RATIO * time - 2.0 * x / DIAMETER).cos();
     let above = z - HUB[2];
@@ -47,8 +47,8 @@ fn wake([x, _, z]: [f64; 3], time: f64) -> [f32; 3] {
     [(WIND - slow + 0.4 * wave) as f32, 0.0, up as f32]
 }
 
-/// Averages of [`wake`] on `grid` as `run` would have kept them under `field`, by rotor alone or with a helix;
-/// no instant falls into the first bin of rotor azimuth of those by rotor alone.
+/// Averages of [`wake`] on `grid` as `run` would have kept them under `field`, by rotor alone or with a
+/// helix; no instant falls into the first bin of rotor azimuth of those by rotor alone.
 fn keep(output: &Path, run: &str, field: &str, grid: Grid) -> PathBuf {
     let has_helix = run == "helix";
     let bins = match has_helix {

@@ -40,8 +40,8 @@ pub(crate) fn axes(grid: &Grid) -> [String; 2] {
     [0, 1].map(|place| format!("{}/D", AXES[spanned.get(place).copied().unwrap_or(place)]))
 }
 
-/// Mean velocity along the wind of `averaged`, and that at some phases, in the plane of `grid`; `downwind` gives
-/// it there (m/s), `marks` what is marked in a bin (diameters from the hub).
+/// Mean velocity along the wind of `averaged`, and that at some phases, in the plane of `grid`; `downwind`
+/// gives it there (m/s), `marks` what is marked in a bin (diameters from the hub).
 ///
 /// # Errors
 /// [`PostprocessingError::File`].

@@ -38,8 +38,8 @@ impl Run<'_> {
         Request::of(self.folder.path())
     }
 
-    /// `error` in words for a page: which file, why, and the fix; files are named from the study's folder on, so
-    /// that the page says the same wherever that is.
+    /// `error` in words for a page: which file, why, and the fix; files are named from the study's folder on,
+    /// so that the page says the same wherever that is.
     pub(super) fn told(&self, error: &PostprocessingError) -> String {
         let mut text = error.to_string();
         let mut source = error.source();
@@ -55,7 +55,8 @@ impl Run<'_> {
         text.replace(&study, "")
     }
 
-    /// That `what` of `field` are not on the page because there are `how_many`, and the command that draws them.
+    /// That `what` of `field` are not on the page because there are `how_many`, and the command that draws
+    /// them.
     pub(super) fn too_large(
         &self,
         what: &str,
