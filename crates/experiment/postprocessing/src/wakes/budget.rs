@@ -8,8 +8,8 @@ use report::{Signals, TrackFigure};
 
 /// Name under which analyses know volumes at instants.
 const VOLUMES: &str = "volumes";
-/// Most values of volumes at instants that a report looks at: points times instants (–). So many take some two
-/// seconds.
+/// Most values of volumes at instants that a report looks at: points times instants (–). So many take some
+/// two seconds.
 const MOST_VALUES: usize = 20_000_000;
 
 /// What was found run by run.
