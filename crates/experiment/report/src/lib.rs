@@ -19,15 +19,16 @@ pub use figures::surrogate::{SurrogateCut, SurrogateFigures, SurrogateMap};
 pub use figures::synchronisation::{
     Along, CentreLine, CurveAt, CurveEnd, CurveFigure, CurvePanel, CurvePoint, DeficitFigure,
     DeficitLine, DeficitPanel, DensityFigure, DensityRow, DiscFigure, DiscPanel, DiscPath,
-    DiscPoint, MapFigure, MapPanel, OffsetFigure, OffsetPanel, OffsetPoint, PhaseNumbers, PhaseRow,
-    Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure, SpectrumLine, SurfaceFigure,
-    SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
+    DiscPoint, MapColours, MapFigure, MapPanel, OffsetFigure, OffsetPanel, OffsetPoint,
+    PhaseNumbers, PhaseRow, Signals, SliceFigure, SlicePanel, SliceRotor, SpectrumFigure,
+    SpectrumLine, SurfaceFigure, SurfacePanel, Synchronisation, TrackFigure, TrackLine, TrackRow,
 };
 pub use precursor::{CoherenceLine, DriftRow, HubWind, LevelRow, PrecursorRecords, TimeHeightMap};
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+pub use study::colours;
 pub use units::are_of_models;
 
 /// Files written by this process so far (–).

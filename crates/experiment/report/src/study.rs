@@ -4,7 +4,7 @@ use crate::layout::{self, Lane, Rotor};
 use crate::units::Units;
 use crate::{ReportError, RunRecords, StudyRecords};
 use basis::Sense;
-use basis::records::{DeliveredPitch, Plane, PlaneAxes, TurbineSummary};
+use basis::records::{DeliveredPitch, Plane, PlaneAxes, Summary, TurbineSummary};
 
 /// How a turbine was excited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,19 +61,8 @@ impl<'a> Study<'a> {
         if records.runs.is_empty() {
             return Err(ReportError::NoRuns { case: records.case_name.clone() });
         }
-        let reference = records
-            .runs
-            .iter()
-            .find_map(|run| run.summary.compare_with.as_deref())
-            .and_then(|name| records.runs.iter().position(|run| run.summary.run == name))
-            .unwrap_or(0);
-        let colours = (0..records.runs.len())
-            .map(|run| match run {
-                run if run == reference => 0,
-                run if run < reference => run + 1,
-                run => run,
-            })
-            .collect();
+        let summaries: Vec<&Summary> = records.runs.iter().map(|run| &run.summary).collect();
+        let colours = colours(&summaries);
         let rotors = layout::rotors(records);
         Ok(Self { records, lanes: layout::lanes(&rotors), rotors, colours })
     }
@@ -190,6 +179,20 @@ impl<'a> Study<'a> {
         let distances = places.windows(2).map(|pair| pair[1] - pair[0]);
         distances.filter(|distance| *distance > SIDE_BY_SIDE).collect()
     }
+}
+
+/// Colour index of each run of a study, whose summaries are `runs`: 0 is kept for the run that others compare
+/// with.
+pub fn colours(runs: &[&Summary]) -> Vec<usize> {
+    let measure = runs.iter().find_map(|run| run.compare_with.as_deref());
+    let reference = measure.and_then(|name| runs.iter().position(|run| run.run == name));
+    let reference = reference.unwrap_or(0);
+    let colour = |run: usize| match run {
+        run if run == reference => 0,
+        run if run < reference => run + 1,
+        run => run,
+    };
+    (0..runs.len()).map(colour).collect()
 }
 
 /// The plane called `name`.

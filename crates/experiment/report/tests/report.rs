@@ -9,8 +9,8 @@ mod tables;
 use basis::Sense;
 use basis::records::{ControlSummary, PitchExcitation, Series, examples};
 use report::{
-    Along, PhaseNumbers, PhaseRow, ReportError, StudyRecords, Synchronisation, TrackFigure,
-    TrackLine, TrackRow,
+    Along, PhaseNumbers, PhaseRow, ReportError, Signals, StudyRecords, Synchronisation,
+    TrackFigure, TrackLine, TrackRow,
 };
 use std::fs;
 use std::path::Path;
@@ -339,6 +339,24 @@ fn every_turbine_that_joins_a_helix_has_its_part_its_rows_and_its_files() {
     let alone = page(&study);
     assert!(alone.contains("<h2>Phase synchronisation</h2>"));
     assert!(alone.contains("<figure id=\"phases-helix-ccw\">"));
+}
+
+#[test]
+fn what_must_be_said_of_signals_stands_below_them_and_alone_where_nothing_is_drawn() {
+    let mut study = synthetic::two_runs();
+    let bare = page(&study);
+    study.signals = vec![Signals {
+        title: "The wake by phase".to_owned(),
+        notes: vec!["a <file> is damaged".to_owned()],
+        ..Signals::default()
+    }];
+    let told = page(&study);
+    assert!(told.contains("<h2>The wake by phase</h2>"));
+    assert!(told.contains("<li>a &lt;file&gt; is damaged</li>"));
+    assert_well_formed(&told);
+    // Without anything to show or to say there is no such part.
+    study.signals = vec![Signals { title: "Nothing".to_owned(), ..Signals::default() }];
+    assert_eq!(page(&study), bare);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Figures of a tuning: the curve iteration by iteration, maps, cuts, and power against loads.
 
 use crate::{Compromise, Tuned, TuningError};
-use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, MapPanel, Signals};
+use report::{CurveAt, CurveFigure, CurvePanel, MapColours, MapFigure, MapPanel, Signals};
 use search::{Normal, Sum};
 
 /// Places along a curve, and along each side of a map (–).
@@ -150,6 +150,8 @@ fn map(tuned: &Tuned) -> Result<MapFigure, TuningError> {
     };
     let variables = &tuned.file.variables;
     Ok(MapFigure {
+        colours: MapColours::AboutZero,
+        is_to_scale: false,
         has_lines: true,
         name: "maps".to_owned(),
         title: "Gain over both variables".to_owned(),

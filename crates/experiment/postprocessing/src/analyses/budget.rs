@@ -53,31 +53,50 @@ impl BoxRow {
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let found = Averaged::of(request)?;
+    let (rows, told) = boxes(request, &found)?;
+    let mut remarks = found.remarks.clone();
+    remarks.extend(told);
+    remarks.extend(drawn(request, &[signals(&found, &rows)])?);
+    let text = text(&found, &rows, request.width());
+    Ok(Answer { text, json: json(&found, &rows), remarks })
+}
+
+/// The figure of the fields of `found`, and what must be said.
+///
+/// # Errors
+/// [`PostprocessingError::Fields`] for fields without a budget.
+pub(crate) fn shown(request: &Request, found: &Averaged) -> Result<Signals, PostprocessingError> {
+    let (rows, notes) = boxes(request, found)?;
+    Ok(Signals { notes, ..signals(found, &rows) })
+}
+
+/// The boxes that `request` asks for, and what must be said.
+fn boxes(
+    request: &Request,
+    found: &Averaged,
+) -> Result<(Vec<BoxRow>, Vec<String>), PostprocessingError> {
     let length = settings::positive(request, &LENGTH, 0.5)? * found.setting.diameter;
     let side = settings::positive(request, &SIDE, 1.0)? * found.setting.diameter;
     if found.grid().spanned().len() < 3 {
         let fix = "give fields of a volume, such as `--field volumes` of a run with output.volume_interval";
         return Err(refused(&found.path, "spans no volume, which a budget needs", fix));
     }
-    let (rows, n_holed) = boxes(&found, length, side)?;
-    let mut remarks = found.remarks.clone();
-    remarks.push("pressure is not on record: its work is in the residual, with that of viscous and subgrid stresses".to_owned());
+    let (rows, n_holed) = in_a_row(found, length, side)?;
+    let mut told = vec!["pressure is not on record: its work is in the residual, with that of viscous and subgrid stresses".to_owned()];
     if let Some(row) = rows.iter().find(|row| row.holds_rotor()) {
         let [from, to] = row.span.map(|x| x / found.setting.diameter);
-        remarks.push(format!(
+        told.push(format!(
             "the box from {from:.2} to {to:.2} D holds the rotor: what the rotor takes is in its residual"
         ));
     }
     if n_holed > 0 {
-        remarks.push(format!("{n_holed} boxes have holes, and no budget"));
+        told.push(format!("{n_holed} boxes have holes, and no budget"));
     }
-    remarks.extend(drawn(request, &[signals(&found, &rows)])?);
-    let text = text(&found, &rows, request.width());
-    Ok(Answer { text, json: json(&found, &rows), remarks })
+    Ok((rows, told))
 }
 
 /// The boxes, one behind the other, and how many have holes.
-fn boxes(
+fn in_a_row(
     found: &Averaged,
     length: f64,
     side: f64,

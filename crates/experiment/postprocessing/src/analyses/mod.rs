@@ -3,15 +3,15 @@
 //! An analysis reads the records of runs and answers in text and in JSON. The command line makes its
 //! arguments and its help from the descriptor; a program calls [`Analysis::run`] with a [`Request`].
 
-mod budget;
+pub(crate) mod budget;
 mod changes;
-mod entrainment;
+pub(crate) mod entrainment;
 mod gains;
 mod hub_vortex;
 mod lock;
 mod meandering;
 #[cfg(feature = "modes")]
-mod modes;
+pub(crate) mod modes;
 mod moments;
 mod offsets;
 mod particles;
@@ -19,7 +19,7 @@ mod phase;
 pub(crate) mod phases;
 mod spectra;
 mod tune;
-mod vortices;
+pub(crate) mod vortices;
 mod winds;
 
 pub use crate::request::{AnalysisSetting, Request, Takes};

@@ -12,6 +12,7 @@ use crate::wake_fields::settings::{
 };
 use crate::wake_fields::{Fields, Instants, NO_TIMES, TELL_TIMES, refused};
 use found::{Found, Question};
+use report::Signals;
 use report::text_table::{Column, TextTable};
 use serde_json::json;
 use source::Source;
@@ -82,6 +83,29 @@ const N_LISTED: usize = 5;
 const N_SHOWN: usize = 3;
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
+    let found = found(request)?;
+    let mut remarks = Vec::from_iter(drawn(request, &[figures::signals(&found)])?);
+    remarks.extend(left_out(&found));
+    Ok(Answer { text: text(&found, request.width()), json: json(&found), remarks })
+}
+
+/// The figures of what `request` asks for, and what must be said.
+///
+/// # Errors
+/// [`PostprocessingError`].
+pub(crate) fn shown(request: &Request) -> Result<Signals, PostprocessingError> {
+    let found = found(request)?;
+    Ok(Signals { notes: Vec::from_iter(left_out(&found)), ..figures::signals(&found) })
+}
+
+/// Points without modes, in words; none where all have some.
+fn left_out(found: &Found) -> Option<String> {
+    let (n, all) = (found.spod.n_masked, found.grid.len());
+    (n > 0).then(|| format!("{n} of {all} points have a hole at some instant and are left out"))
+}
+
+/// The modes of the fields that `request` is about.
+fn found(request: &Request) -> Result<Found, PostprocessingError> {
     let instants = Fields::instants(request)?;
     let path = instants.file.path().to_owned();
     if !instants.file.has_times() {
@@ -90,13 +114,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let question = question(request, &instants)?;
     let Instants { file, setting, places, .. } = instants;
     let mut source = Source { file, places };
-    let found = Found::of(&mut source, setting, &question).map_err(|trouble| trouble.at(&path))?;
-    let mut remarks = Vec::from_iter(drawn(request, &[figures::signals(&found)])?);
-    if found.spod.n_masked > 0 {
-        let (n, all) = (found.spod.n_masked, found.grid.len());
-        remarks.push(format!("{n} of {all} points have a hole at some instant and are left out"));
-    }
-    Ok(Answer { text: text(&found, request.width()), json: json(&found), remarks })
+    Found::of(&mut source, setting, &question).map_err(|trouble| trouble.at(&path))
 }
 
 /// What `request` asks for.

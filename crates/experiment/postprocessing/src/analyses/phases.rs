@@ -1,18 +1,19 @@
 //! `phases`: a wake averaged by rotor and helix azimuth, and taken apart into mean, periodic and random
 //! parts.
 
+pub(crate) mod figures;
+
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
     ZEROS,
 };
-use crate::wake_fields::{Averaged, Fields, averages_bins, axes, conditions, panel};
+use crate::wake_fields::{Averaged, Fields, averages_bins, conditions};
 use analysis::phases::{Decomposition, PhaseAverager, decompose, standard_error};
 use basis::Sense;
 use basis::records::Grid;
 use report::text_table::{Column, TextTable};
-use report::{MapFigure, MapPanel, Signals};
 use serde_json::json;
 use std::path::Path;
 
@@ -63,7 +64,7 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         remarks.push(format!("averages written to {out}"));
     }
     let widths = widths(request, &found)?;
-    remarks.extend(drawn(request, &[signals(&found, &parts)])?);
+    remarks.extend(drawn(request, &[figures::signals(&found, &parts)?])?);
     let sums = summed(&found, &parts);
     let text = text(&found, &sums, &widths, request.width());
     Ok(Answer { text, json: json(&found, &sums, &widths), remarks })
@@ -231,29 +232,4 @@ pub(super) fn setting_json(found: &Averaged) -> serde_json::Value {
         "hub_m": setting.hub,
         "span_s": found.head.span,
     })
-}
-
-fn signals(found: &Averaged, parts: &Decomposition) -> Signals {
-    let scale = found.setting.wind_speed.powi(2);
-    let over = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| value / scale).collect() };
-    let panels =
-        [("all", &parts.total[0]), ("periodic", &parts.periodic[0]), ("random", &parts.random[0])];
-    let panels: Vec<MapPanel> = panels
-        .iter()
-        .filter_map(|(title, values)| panel(found.grid(), &found.setting, *title, &over(values)))
-        .collect();
-    let map = MapFigure {
-        has_lines: false,
-        name: "phases-stress-uu".to_owned(),
-        title: "Fluctuations along the wind".to_owned(),
-        caption: format!(
-            "⟨u'u'⟩ over the squared free stream. {}; {}.",
-            conditions(&found.setting),
-            found.samples()
-        ),
-        along: axes(found.grid()),
-        unit: "–".to_owned(),
-        panels,
-    };
-    Signals { title: "Phases of the wake".to_owned(), maps: vec![map], ..Signals::default() }
 }

@@ -2,16 +2,16 @@
 
 mod answer;
 mod cut;
-mod figures;
+pub(crate) mod figures;
 mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
-use crate::wake_fields::Averaged;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
     WIND_SPEED, ZEROS,
 };
+use crate::wake_fields::{Averaged, shown};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
@@ -83,11 +83,14 @@ const BIRTH: f64 = 0.15;
 const MOST_MISFIT: f64 = 0.5;
 /// Least distance from the hub at which a vortex comes from a tip, not from a root (rotor diameters).
 const TIP: f64 = 0.25;
+/// That vortices are not followed, and why.
+const NOT_FOLLOWED: &str =
+    "vortices are not followed: the rotor's frequency is not known (--rotor-hz)";
 /// Revolutions for which a vortex is followed at least (–).
 const REVOLUTIONS: f64 = 8.0;
 
-/// What was found in all bins.
-struct Found {
+/// What was found in the bins.
+pub(crate) struct Found {
     averaged: Averaged,
     cut: Cut,
     frames: Vec<Vec<Vortex>>,
@@ -101,6 +104,8 @@ struct Found {
     fits: Vec<Fitted>,
     /// The pair that counts, from 1, where blades are told.
     pair: Option<usize>,
+    /// What must be said.
+    remarks: Vec<String>,
 }
 
 /// A vortex that passed another.
@@ -123,6 +128,72 @@ struct Fitted {
 }
 
 impl Found {
+    /// The vortices in the fields of `averaged`, as `request` asks for them.
+    ///
+    /// # Errors
+    /// [`PostprocessingError`].
+    fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
+        let mut found = Self::sought(request, averaged, |_| true)?;
+        if found.is_along() {
+            match rotor_frequency(request, &found.averaged)? {
+                Some(frequency) => follow_all(request, &mut found, frequency)?,
+                None => found.remarks.push(NOT_FOLLOWED.to_owned()),
+            }
+        }
+        if found.n_lost > 0 {
+            found.remarks.push(format!(
+                "{} peaks of vorticity were no vortex: their fit did not settle",
+                found.n_lost
+            ));
+        }
+        Ok(found)
+    }
+
+    /// The vortices in those bins of `averaged` that figures of velocity show, which takes a fraction of the
+    /// time; they are not followed.
+    ///
+    /// # Errors
+    /// [`PostprocessingError`].
+    pub(crate) fn in_some(
+        request: &Request,
+        averaged: Averaged,
+    ) -> Result<Self, PostprocessingError> {
+        let shown = shown(&averaged.head);
+        Self::sought(request, averaged, |index| shown.contains(&index))
+    }
+
+    /// The vortices in those bins of `averaged` that are `wanted`.
+    fn sought(
+        request: &Request,
+        averaged: Averaged,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Result<Self, PostprocessingError> {
+        let cut = Cut::of(&averaged)?;
+        let least = least(request, &averaged, &cut)?;
+        let mut found = Self {
+            frames: Vec::new(),
+            n_lost: 0,
+            least,
+            tracks: Vec::new(),
+            blades: Vec::new(),
+            leapfrogs: Vec::new(),
+            fits: Vec::new(),
+            pair: None,
+            remarks: averaged.remarks.clone(),
+            averaged,
+            cut,
+        };
+        for index in 0..found.averaged.head.bins.len() {
+            let (vortices, n_lost) = match wanted(index) {
+                true => vortices(&found.section(index)?, &found.search(least)),
+                false => (Vec::new(), 0),
+            };
+            found.frames.push(vortices);
+            found.n_lost += n_lost;
+        }
+        Ok(found)
+    }
+
     /// Leapfrogs of the pair that counts.
     fn counted(&self) -> impl Iterator<Item = &Passed> {
         self.leapfrogs.iter().filter(|passed| passed.pair == self.pair)
@@ -151,42 +222,8 @@ impl Found {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let averaged = Averaged::of(request)?;
-    let cut = Cut::of(&averaged)?;
-    let least = least(request, &averaged, &cut)?;
-    let mut found = Found {
-        frames: Vec::new(),
-        n_lost: 0,
-        least,
-        tracks: Vec::new(),
-        blades: Vec::new(),
-        leapfrogs: Vec::new(),
-        fits: Vec::new(),
-        pair: None,
-        averaged,
-        cut,
-    };
-    for index in 0..found.averaged.head.bins.len() {
-        let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
-        found.frames.push(vortices);
-        found.n_lost += n_lost;
-    }
-    let mut remarks = found.averaged.remarks.clone();
-    if found.is_along() {
-        match rotor_frequency(request, &found.averaged)? {
-            Some(frequency) => follow_all(request, &mut found, frequency)?,
-            None => remarks.push(
-                "vortices are not followed: the rotor's frequency is not known (--rotor-hz)"
-                    .to_owned(),
-            ),
-        }
-    }
-    if found.n_lost > 0 {
-        remarks.push(format!(
-            "{} peaks of vorticity were no vortex: their fit did not settle",
-            found.n_lost
-        ));
-    }
+    let found = Found::of(request, Averaged::of(request)?)?;
+    let mut remarks = found.remarks.clone();
     let (surface, told) = surfaces::made(request, &found)?;
     remarks.extend(told);
     let mut signals = figures::signals(&found)?;

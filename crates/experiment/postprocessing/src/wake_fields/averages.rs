@@ -54,12 +54,18 @@ impl Averaged {
         file: PathBuf,
     ) -> Result<Self, PostprocessingError> {
         let is_of_run = file != request.run();
-        let rates = match is_of_run {
-            true => Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name))?
-                .rates(stored.head.span),
-            false => None,
-        };
         let mut remarks = empty_bins(&stored.head);
+        let mut rates = None;
+        if is_of_run {
+            match Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name)) {
+                Ok(angles) => rates = angles.rates(stored.head.span),
+                // Of averages that are made the azimuths are known; how fast they grow need not be.
+                Err(error @ PostprocessingError::Fields { .. }) => {
+                    remarks.push(format!("how fast rotor and helix turned is not known: {error}"));
+                }
+                Err(error) => return Err(error),
+            }
+        }
         if is_of_run && request.text(FIELD.name).is_none() {
             let name = file.file_name().unwrap_or_default().to_string_lossy();
             remarks.push(format!("averages of {name}; --field names other planes of the run"));
@@ -193,6 +199,11 @@ impl Averaged {
     pub(crate) fn samples(&self) -> String {
         let counts = || self.head.bins.iter().map(|bin| bin.n_instants);
         let n_bins = self.head.bins.len();
+        if n_bins == 1 {
+            let [from, to] = self.head.span;
+            let n: u64 = counts().sum();
+            return format!("{n} instants, {from:.1} to {to:.1} s");
+        }
         format!(
             "{} bins of {} to {} instants, {:.0} on the average, {:.1} to {:.1} s",
             n_bins,
@@ -202,6 +213,20 @@ impl Averaged {
             self.head.span[0],
             self.head.span[1]
         )
+    }
+
+    /// Samples behind them in words, with the bin that has fewest and those that are empty.
+    pub(crate) fn counts(&self) -> String {
+        let bins = &self.head.bins;
+        let fewest = (0..bins.len()).min_by_key(|index| bins[*index].n_instants);
+        let mut text = self.samples();
+        if let (Some(index), true) = (fewest, bins.len() > 1) {
+            text += &format!(", fewest in bin {index} ({})", self.name_of_bin(index));
+        }
+        match empty_bins(&self.head).first() {
+            Some(empty) => format!("{text}; {empty}"),
+            None => format!("{text}; no bin is empty"),
+        }
     }
 }
 

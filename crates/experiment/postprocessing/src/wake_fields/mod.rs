@@ -8,7 +8,7 @@ mod source;
 
 pub(crate) use angles::Angles;
 pub(crate) use averages::{Averaged, bins as averages_bins};
-pub(crate) use maps::{axes, panel};
+pub(crate) use maps::{axes, by_phase, panel, shown, velocity_by_phase};
 pub(crate) use source::Fields;
 #[cfg(feature = "modes")]
 pub(crate) use source::{Instants, NO_TIMES, TELL_TIMES};

@@ -18,7 +18,7 @@ use crate::draw::font::{Face, wrapped};
 use crate::draw::{Figure, TextStyle, text};
 use crate::sentence;
 use crate::study::Study;
-use synchronisation::Synchronisation;
+use synchronisation::{Signals, Synchronisation};
 
 /// Width of every figure.
 const WIDTH: f64 = 1000.0;
@@ -29,15 +29,27 @@ pub(crate) struct Figures {
     pub(crate) study: Vec<Figure>,
     /// Of each turbine that joins a helix, below the title of its part of the page.
     pub(crate) joined: Vec<(String, Vec<Figure>)>,
-    /// Of further signals, below the title and the lead of their part.
-    pub(crate) signals: Vec<([String; 2], Vec<Figure>)>,
+    /// Of further signals.
+    pub(crate) signals: Vec<SignalsPart>,
+}
+
+/// A part of the page with further signals.
+pub(crate) struct SignalsPart {
+    /// Its title.
+    pub(crate) title: String,
+    /// What stands below it.
+    pub(crate) lead: String,
+    /// What it shows.
+    pub(crate) figures: Vec<Figure>,
+    /// What must be said below.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Figures {
     /// All of them, in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Figure> {
         let joined = self.joined.iter().flat_map(|(_, figures)| figures);
-        let signals = self.signals.iter().flat_map(|(_, figures)| figures);
+        let signals = self.signals.iter().flat_map(|part| &part.figures);
         self.study.iter().chain(joined).chain(signals)
     }
 }
@@ -59,15 +71,16 @@ pub(crate) fn all(study: &Study) -> Figures {
     figures.extend(pitch::pitch(study));
     figures.extend(power::rotor_speed(study));
     let mut joined = joined(&study.records.synchronisation);
-    let mut signals: Vec<([String; 2], Vec<Figure>)> = study
-        .records
-        .signals
-        .iter()
-        .map(|of| ([of.title.clone(), of.lead.clone()], synchronisation::of_signals(of)))
-        .collect();
+    let part = |of: &Signals| SignalsPart {
+        title: of.title.clone(),
+        lead: of.lead.clone(),
+        figures: synchronisation::of_signals(of),
+        notes: of.notes.clone(),
+    };
+    let mut signals: Vec<SignalsPart> = study.records.signals.iter().map(part).collect();
     let conditions = sentence::study_conditions(study);
     let of_turbines = joined.iter_mut().flat_map(|(_, figures)| figures);
-    let of_signals = signals.iter_mut().flat_map(|(_, figures)| figures);
+    let of_signals = signals.iter_mut().flat_map(|part| &mut part.figures);
     let all = figures.iter_mut().chain(of_turbines).chain(of_signals);
     all.for_each(|figure| sign(figure, &conditions));
     Figures { study: figures, joined, signals }

@@ -254,27 +254,29 @@ fn parts(figures: &Figures, lead: Vec<&Figure>) -> Result<Vec<Value>, ReportErro
     let mut parts = Vec::new();
     for (index, (id, title, words, _)) in PARTS.iter().enumerate() {
         let here = figures.study.iter().filter(|figure| place(figure) == index);
-        parts.extend(part(id, title, words, here.filter(|figure| !leads(figure)))?);
+        parts.extend(part(id, [title, words], here.filter(|figure| !leads(figure)), &[])?);
     }
     for (index, (title, figures)) in figures.joined.iter().enumerate() {
-        parts.extend(part(&format!("joined-{}", index + 1), title, JOINED, figures.iter())?);
+        parts.extend(part(&format!("joined-{}", index + 1), [title, JOINED], figures.iter(), &[])?);
     }
-    for (index, ([title, lead], figures)) in figures.signals.iter().enumerate() {
-        parts.extend(part(&format!("signals-{}", index + 1), title, lead, figures.iter())?);
+    for (index, own) in figures.signals.iter().enumerate() {
+        let (id, words) = (format!("signals-{}", index + 1), [own.title.as_str(), &own.lead]);
+        parts.extend(part(&id, words, own.figures.iter(), &own.notes)?);
     }
     Ok(parts)
 }
 
-/// `figures` under a heading with an anchor; nothing where there are none.
+/// `figures` and `notes` under a heading with an anchor and a lead; nothing where there is neither.
 fn part<'f>(
     id: &str,
-    title: &str,
-    lead: &str,
+    [title, lead]: [&str; 2],
     figures: impl Iterator<Item = &'f Figure>,
+    notes: &[String],
 ) -> Result<Option<Value>, ReportError> {
     let drawings: Vec<Value> = figures.map(drawing).collect::<Result<_, _>>()?;
-    Ok((!drawings.is_empty())
-        .then(|| context! { id => id, title => title, lead => lead, figures => drawings }))
+    let is_empty = drawings.is_empty() && notes.is_empty();
+    Ok((!is_empty)
+        .then(|| context! { id, title, lead, figures => drawings, notes => notes.to_vec() }))
 }
 
 /// A figure for the template.

@@ -2,7 +2,7 @@
 
 use super::found::Found;
 use crate::wake_fields::{axes, panel};
-use report::{DensityFigure, DensityRow, MapFigure, MapPanel, Signals, SpectrumLine};
+use report::{DensityFigure, DensityRow, MapColours, MapFigure, MapPanel, Signals, SpectrumLine};
 
 /// Modes that a figure of densities draws (–).
 const N_DRAWN: usize = 3;
@@ -93,6 +93,8 @@ fn by_energy(answer: &Found, component: usize) -> Option<MapFigure> {
 
 fn figure(answer: &Found, name: &str, title: String, panels: Vec<MapPanel>) -> Option<MapFigure> {
     (!panels.is_empty()).then(|| MapFigure {
+        colours: MapColours::AboutZero,
+        is_to_scale: true,
         has_lines: false,
         name: name.to_owned(),
         title,

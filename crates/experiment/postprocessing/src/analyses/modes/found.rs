@@ -136,7 +136,7 @@ impl Found {
     pub(super) fn samples(&self) -> String {
         let Self { n_instants, spod, span, .. } = self;
         format!(
-            "{n_instants} instants from {} to {} s; {} blocks of {} instants, {} % overlap, Hamming's window",
+            "{n_instants} instants from {:.2} to {:.2} s; {} blocks of {} instants, {} % overlap, Hamming's window",
             span[0],
             span[1],
             spod.n_blocks,

@@ -2,15 +2,15 @@
 
 use super::{Fitted, Found, Passed};
 use crate::PostprocessingError;
-use crate::wake_fields::{axes, conditions, panel};
+use crate::wake_fields::{axes, by_phase, conditions, panel};
 use analysis::vortices::{SineFit, Track, Vortex, cubic_fit};
-use report::{CurveAt, CurveFigure, CurvePanel, MapFigure, Signals};
+use basis::records::Moments;
+use report::{CurveAt, CurveFigure, CurvePanel, MapColours, MapFigure, Signals};
 
 /// The figures of what was `found`.
 pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
     let (averaged, setting) = (&found.averaged, &found.averaged.setting);
     let n = found.frames.len();
-    let spanned = found.cut.grid.spanned();
     let mut panels = Vec::new();
     for index in (0..n).step_by(n.div_ceil(3).max(1)) {
         let scale = setting.diameter / setting.wind_speed;
@@ -18,13 +18,12 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
             found.section(index)?.vorticity().iter().map(|value| value * scale).collect();
         let title = averaged.name_of_bin(index);
         let Some(mut panel) = panel(&found.cut.grid, setting, title, &vorticity) else { continue };
-        let place = |vortex: &Vortex| {
-            [0, 1].map(|a| (vortex.position[a] - setting.hub[spanned[a]]) / setting.diameter)
-        };
-        panel.points = found.frames[index].iter().map(place).collect();
+        panel.points = marks(found, index);
         panels.push(panel);
     }
     let map = MapFigure {
+        colours: MapColours::AboutZero,
+        is_to_scale: true,
         has_lines: false,
         name: "vortices-by-phase".to_owned(),
         title: "Vortices by phase".to_owned(),
@@ -37,9 +36,42 @@ pub(super) fn signals(found: &Found) -> Result<Signals, PostprocessingError> {
         unit: "U/D".to_owned(),
         panels,
     };
+    let (maps, curves) = (vec![map, velocity(found)?], curves(found));
+    Ok(Signals { title: "Vortices".to_owned(), maps, curves, ..Signals::default() })
+}
+
+/// Places of the vortices of bin number `index`, in diameters from the hub.
+fn marks(found: &Found, index: usize) -> Vec<[f64; 2]> {
+    let (setting, spanned) = (&found.averaged.setting, found.cut.grid.spanned());
+    let place = |vortex: &Vortex| {
+        [0, 1].map(|a| (vortex.position[a] - setting.hub[spanned[a]]) / setting.diameter)
+    };
+    found.frames[index].iter().map(place).collect()
+}
+
+/// Mean velocity along the wind, and that at some phases with the vortices.
+///
+/// # Errors
+/// [`PostprocessingError::File`].
+pub(crate) fn velocity(found: &Found) -> Result<MapFigure, PostprocessingError> {
+    let downwind = |moments: &Moments| {
+        let [u, ..] = found.cut.velocity(moments);
+        u
+    };
+    let mut map = by_phase(&found.averaged, &found.cut.grid, downwind, |bin| marks(found, bin))?;
+    let n_marked: usize = map.panels.iter().map(|panel| panel.points.len()).sum();
+    map.caption = match n_marked {
+        0 => format!("No vortex was found in these bins. {}", map.caption),
+        n => format!("Marked: {n} vortices that were fitted. {}", map.caption),
+    };
+    Ok(map)
+}
+
+/// Where vortices leapfrog over the azimuth of the helix, and how strong they are over the distance, where
+/// enough of them were followed.
+fn curves(found: &Found) -> Vec<CurveFigure> {
     let leapfrogs = found.sines().next().is_some().then(|| leapfrog_figure(found));
-    let curves = leapfrogs.into_iter().chain(strength_figure(found)).collect();
-    Ok(Signals { title: "Vortices".to_owned(), maps: vec![map], curves, ..Signals::default() })
+    leapfrogs.into_iter().chain(strength_figure(found)).collect()
 }
 
 /// Places of leapfrogs over the azimuth of the helix, and the sine through them, side by side.

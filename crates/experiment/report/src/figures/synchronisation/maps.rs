@@ -12,10 +12,19 @@ use std::collections::BTreeMap;
 
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 84.0;
-const GAP: [f64; 2] = [34.0, 66.0];
+const GAP: [f64; 2] = [46.0, 66.0];
 const HEIGHT: f64 = 230.0;
 /// Panels in a row at most.
 const MOST: usize = 3;
+/// Length over height from which panels that are to scale stand in rows of two (–), and such with points.
+const WIDE: f64 = 3.0;
+const WIDE_WITH_POINTS: f64 = 1.5;
+/// Height of such a panel at most, and of the bar of colours at least.
+const MOST_HEIGHT: f64 = 420.0;
+const LEAST_BAR: f64 = 120.0;
+/// Room of a number beside the bar of colours, and how many there are at most (–).
+const TICK: f64 = 30.0;
+const MOST_TICKS: usize = 6;
 /// Contour lines, about.
 const N_LEVELS: usize = 10;
 
@@ -32,10 +41,23 @@ pub struct MapFigure {
     pub along: [String; 2],
     /// Unit of the quantity.
     pub unit: String,
+    /// How values become colours.
+    pub colours: MapColours,
+    /// Whether a unit of length is as long along both axes.
+    pub is_to_scale: bool,
     /// Whether lines of equal value are drawn, with their values: those of a noisy quantity would hide it.
     pub has_lines: bool,
     /// The panels.
     pub panels: Vec<MapPanel>,
+}
+
+/// How values become colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapColours {
+    /// Zero is in the middle: below and above it differ.
+    AboutZero,
+    /// From the least value to the greatest.
+    FromLeast,
 }
 
 /// One map.
@@ -62,22 +84,19 @@ pub(super) fn maps(figure: &MapFigure) -> Option<Figure> {
     if figure.panels.is_empty() || !figure.panels.iter().all(is_whole) {
         return None;
     }
-    let values = figure.panels.iter().flat_map(|panel| &panel.values);
-    let most = values.map(|value| value.abs()).fold(0.0, f64::max);
-    let range = if most > 0.0 { [-most, most] } else { [-1.0, 1.0] };
+    let range = range(figure);
     let (mut levels, decimals) = Scale::linear(range[0], range[1]).ticks(2 * N_LEVELS);
     if !figure.has_lines {
         levels.clear();
     }
-    let n_columns = figure.panels.len().min(MOST);
-    let width = (WIDTH - LEFT - RIGHT - GAP[0] * (n_columns - 1) as f64) / n_columns as f64;
+    let (n_columns, [width, panel_height]) = layout(figure);
     let mut shapes = Vec::new();
     for (index, panel) in figure.panels.iter().enumerate() {
         let (row, column) = (index / n_columns, index % n_columns);
         let [left, top] =
-            [LEFT + (width + GAP[0]) * column as f64, 34.0 + (HEIGHT + GAP[1]) * row as f64];
+            [LEFT + (width + GAP[0]) * column as f64, 34.0 + (panel_height + GAP[1]) * row as f64];
         let [x, y] = panel.places.each_ref().map(|p| Scale::linear(p[0], p[p.len() - 1]));
-        let frame = Frame { area: [left, top, width, HEIGHT], x, y };
+        let frame = Frame { area: [left, top, width, panel_height], x, y };
         shapes.push(drawn(figure, panel, range, (&levels, decimals), &frame));
         frame.title(&panel.title, &mut shapes);
         frame.columns(5, true, &mut shapes);
@@ -87,15 +106,17 @@ pub(super) fn maps(figure: &MapFigure) -> Option<Figure> {
             frame.y_label(&figure.along[1], 46.0, &mut shapes);
         }
     }
-    let bar = [WIDTH - RIGHT + 22.0, 42.0, 14.0, HEIGHT - 8.0];
-    colour_bar(bar, range, Map::Diverging, 6, &figure.unit, &mut shapes);
+    let bar_height = panel_height.max(LEAST_BAR) - 8.0;
+    let n_ticks = ((bar_height / TICK) as usize).min(MOST_TICKS);
+    let bar = [WIDTH - RIGHT + 22.0, 42.0, 14.0, bar_height];
+    colour_bar(bar, range, figure.colours.map(), n_ticks, &figure.unit, &mut shapes);
     let n_rows = figure.panels.len().div_ceil(n_columns);
     Some(Figure {
         name: figure.name.clone(),
         title: figure.title.clone(),
         caption: figure.caption.clone(),
         width: WIDTH,
-        height: 34.0 + (HEIGHT + GAP[1]) * n_rows as f64 - GAP[1] + 50.0,
+        height: 34.0 + (panel_height + GAP[1]) * n_rows as f64 - GAP[1] + 50.0,
         shapes,
     })
 }
@@ -109,7 +130,7 @@ fn drawn(
     frame: &Frame,
 ) -> Shape {
     let size = [frame.area[2].round() as usize, frame.area[3].round() as usize];
-    let picture = Picture::new(size, Map::Diverging, range, |column, row| {
+    let picture = Picture::new(size, figure.colours.map(), range, |column, row| {
         let share =
             [(column as f64 + 0.5) / size[0] as f64, 1.0 - (row as f64 + 0.5) / size[1] as f64];
         let at = |scale: Scale, share: f64| scale.low + share * (scale.high - scale.low);
@@ -150,6 +171,48 @@ fn drawn(
     let (name, unit) = (panel.title.clone(), figure.unit.clone());
     let field = Some(FieldValues { name, run: 0, range, unit });
     Readout { field, both: true, ..frame.readout(["", ""]) }.group(3.0, inner)
+}
+
+impl MapColours {
+    fn map(self) -> Map {
+        match self {
+            Self::AboutZero => Map::Diverging,
+            Self::FromLeast => Map::Sequential,
+        }
+    }
+}
+
+/// Values of the first and the last colour of `figure`.
+fn range(figure: &MapFigure) -> [f64; 2] {
+    let values = || figure.panels.iter().flat_map(|panel| panel.values.iter().copied());
+    let most = values().map(f64::abs).fold(0.0, f64::max);
+    let (low, high) = match figure.colours {
+        MapColours::AboutZero => (-most, most),
+        MapColours::FromLeast => {
+            (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
+        }
+    };
+    if low < high { [low, high] } else { [low - 1.0, low + 1.0] }
+}
+
+/// Panels in a row, with their width and height.
+fn layout(figure: &MapFigure) -> (usize, [f64; 2]) {
+    let width = |n_columns: usize| {
+        (WIDTH - LEFT - RIGHT - GAP[0] * (n_columns - 1) as f64) / n_columns as f64
+    };
+    let n = figure.panels.len();
+    if !figure.is_to_scale {
+        let n_columns = n.min(MOST);
+        return (n_columns, [width(n_columns), HEIGHT]);
+    }
+    let length = |places: &Vec<f64>| places[places.len() - 1] - places[0];
+    let [along, up] = figure.panels[0].places.each_ref().map(length);
+    // Wide panels in rows of three would be too low to see anything, and marks would hide what is in them.
+    let has_points = figure.panels.iter().any(|panel| !panel.points.is_empty());
+    let most = if along > if has_points { WIDE_WITH_POINTS } else { WIDE } * up { 2 } else { MOST };
+    let n_columns = n.min(most);
+    let width = width(n_columns).min(MOST_HEIGHT * along / up);
+    (n_columns, [width, width * up / along])
 }
 
 impl MapPanel {
@@ -262,12 +325,38 @@ mod tests {
         assert!(contours(&bowl(), 3.0).is_empty());
     }
 
+    /// 4 along and 2 up: three beside each other, or two with points, none of them stretched.
+    #[test]
+    fn maps_to_scale_are_not_stretched_and_leave_room_for_points() {
+        let places = [vec![0.0, 4.0], vec![-1.0, 1.0]];
+        let panel = MapPanel { places, values: vec![2.0, 3.0, 4.0, 5.0], ..MapPanel::default() };
+        let figure = |points: Vec<[f64; 2]>| MapFigure {
+            colours: MapColours::FromLeast,
+            is_to_scale: true,
+            has_lines: false,
+            name: "map".into(),
+            title: String::new(),
+            caption: String::new(),
+            along: ["x".into(), "y".into()],
+            unit: "U".into(),
+            panels: vec![MapPanel { points, ..panel.clone() }; 3],
+        };
+        assert_eq!(range(&figure(Vec::new())), [2.0, 5.0]);
+        for (points, expected) in [(Vec::new(), 3), (vec![[1.0, 0.0]], 2)] {
+            let (n_columns, [width, height]) = layout(&figure(points));
+            assert_eq!(n_columns, expected);
+            assert!((width / height - 2.0).abs() < 1e-12);
+        }
+    }
+
     #[test]
     fn a_map_reads_its_own_values_and_holds_no_broken_panel() {
         let panel = bowl();
         assert!((panel.at([0.5, -0.25]) - 0.3125).abs() < 1e-12);
         assert!((panel.at([2.0, 2.0]) - 2.0).abs() < 1e-12);
         let figure = |panel| MapFigure {
+            colours: MapColours::AboutZero,
+            is_to_scale: false,
             has_lines: true,
             name: "map".into(),
             title: String::new(),

@@ -19,7 +19,7 @@ use crate::draw::Figure;
 use basis::records::{Plane, Statistic};
 pub use curves::{CurveAt, CurveFigure, CurvePanel};
 pub use discs::{DiscFigure, DiscPanel, DiscPath, DiscPoint};
-pub use maps::{MapFigure, MapPanel};
+pub use maps::{MapColours, MapFigure, MapPanel};
 pub use surfaces::{SurfaceFigure, SurfacePanel};
 
 /// What a study has to show of a turbine's phase synchronisation; what is empty is left out.
@@ -279,6 +279,8 @@ pub struct Signals {
     pub tracks: Vec<TrackFigure>,
     /// Their densities over frequency.
     pub densities: Vec<DensityFigure>,
+    /// What must be said below, on the page of a study, such as why something is not shown.
+    pub notes: Vec<String>,
 }
 
 /// The wake at one phase of the excitation, from above, and the centre lines of all cases.
