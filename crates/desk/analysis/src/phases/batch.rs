@@ -67,6 +67,11 @@ impl PhaseBatch {
         Ok(Self { bins, span, all: (0..instants.len() as u32).collect(), each })
     }
 
+    /// The bins.
+    pub fn bins(&self) -> &Bins {
+        &self.bins
+    }
+
     /// Instants (–).
     pub fn len(&self) -> usize {
         self.all.len()

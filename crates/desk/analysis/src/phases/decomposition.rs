@@ -19,6 +19,19 @@ pub struct Decomposition {
     pub fewest: Vec<u32>,
 }
 
+impl Decomposition {
+    /// Puts `other`, whose points come next, behind this.
+    pub fn append(&mut self, other: &Self) {
+        let own = self.mean.iter_mut().chain(&mut self.total).chain(&mut self.periodic);
+        let others = other.mean.iter().chain(&other.total).chain(&other.periodic);
+        for (own, other) in own.chain(&mut self.random).zip(others.chain(&other.random)) {
+            own.extend_from_slice(other);
+        }
+        self.n_bins.extend_from_slice(&other.n_bins);
+        self.fewest.extend_from_slice(&other.fewest);
+    }
+}
+
 /// Takes the bins of averages by phase one by one.
 #[derive(Clone, Debug)]
 pub struct Decomposer {

@@ -4,10 +4,10 @@ use super::phases::setting_json;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
-    ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, TURBINE, WIDTH,
+    WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, axes, conditions, panel};
+use crate::wake_fields::{Averaged, Wanted, axes, conditions, panel};
 use analysis::entrainment::{
     Edge, FluxPoint, available_power, flux_along, flux_through_tube, integral, sign_flip, wake_edge,
 };
@@ -25,7 +25,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, RADIUS, SMOOTHING, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER,
-        WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
+        WIND_SPEED, HUB, LENGTHS, ZEROS, MEMORY, FIGURES,
     ],
     run,
 };
@@ -72,7 +72,7 @@ struct DiscRow {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = Averaged::of(request)?;
+    let found = Averaged::of(request, Wanted::Bins)?;
     let parts = found.decomposition()?;
     let radius = settings::positive(request, &RADIUS, 0.5)? * found.setting.diameter;
     let smoothing = settings::positive(request, &SMOOTHING, 0.25)? * found.setting.diameter;

@@ -9,8 +9,8 @@ use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, draw
 use crate::PostprocessingError;
 use crate::wake_fields::Averaged;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
-    WIND_SPEED, ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, ROTOR_HZ, TURBINE,
+    WIDTH, WIND_SPEED, ZEROS,
 };
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
@@ -27,7 +27,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, CRITERION, LEVEL, ROTOR_HZ, BINS, CYCLES,
-        WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
+        WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, MEMORY, FIGURES,
     ],
     run,
 };
@@ -118,7 +118,7 @@ impl Found {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let averaged = Averaged::of(request)?;
+    let averaged = Averaged::of(request, Wanted::Bins)?;
     let cut = Cut::of(&averaged)?;
     let least = least(request, &averaged, &cut)?;
     let mut found = Found {

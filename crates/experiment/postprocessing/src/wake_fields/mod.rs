@@ -2,12 +2,17 @@
 
 mod angles;
 mod averages;
+mod compared;
+mod making;
 mod maps;
+mod plan;
 pub(crate) mod settings;
 mod source;
+mod strips;
 
 pub(crate) use angles::Angles;
-pub(crate) use averages::{Averaged, bins as averages_bins};
+pub(crate) use averages::Averaged;
+pub(crate) use making::{Wanted, bins as averages_bins};
 pub(crate) use maps::{axes, panel};
 pub(crate) use source::Fields;
 #[cfg(feature = "modes")]
