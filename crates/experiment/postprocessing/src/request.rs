@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Something that can be set of an analysis, and may be left out.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +37,8 @@ pub enum Takes {
 pub enum Told<'a> {
     /// What it will cost, in words.
     Cost(&'a str),
-    /// Share of the work that is done (–), and when it began.
-    Share(f64, Instant),
+    /// Share of the work that is done (–).
+    Share(f64),
 }
 
 /// Who is told while an analysis works; nobody at first.

@@ -89,7 +89,7 @@ fn strips_give_the_same_bits_as_one_piece() {
         let listen = move |what: &Told| {
             heard.lock().unwrap().push(match what {
                 Told::Cost(text) => (*text).to_owned(),
-                Told::Share(share, _) => format!("{share:.2}"),
+                Told::Share(share) => format!("{share:.2}"),
             });
         };
         let answer = run("phases", &Request { watch: Watch::new(listen), ..request }).unwrap();
@@ -139,6 +139,9 @@ fn a_file_cut_short_is_refused_by_name() {
     let (fields, _) = fields(folder.path(), 5);
     let bytes = fs::read(&fields).unwrap();
     fs::write(&fields, &bytes[..bytes.len() - 100]).unwrap();
-    let error = run("phases", &Request::of(&fields)).unwrap_err().to_string();
-    assert!(error.contains("tunnel.nc") && error.contains("cut short"), "{error}");
+    let error = run("phases", &Request::of(&fields)).unwrap_err();
+    let text = error.to_string();
+    assert!(text.contains("tunnel.nc") && text.contains("the file has only"), "{text}");
+    let help = miette::Diagnostic::help(&error).unwrap().to_string();
+    assert!(help.contains("cut short"), "{help}");
 }

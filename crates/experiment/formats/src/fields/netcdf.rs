@@ -12,6 +12,7 @@ use std::ops::Range;
 use std::path::Path;
 
 const FIX: &str = "give coordinates x, y, z and time, and velocities u, v, w over time, z, y, x; an axis with one point may be left out";
+const RESTORE: &str = "copy the file again if it was cut short; NetCDF of the classic kinds is read (`nccopy -k 64-bit-offset` makes it of NetCDF-4)";
 /// Names of the components, one set of them.
 const COMPONENTS: [[&str; 3]; 4] = [
     ["u", "v", "w"],
@@ -40,9 +41,9 @@ impl NetCdfFields {
     pub(super) fn open(path: &Path, lengths: Lengths) -> Result<Opened, FileError> {
         let reader = PlacedReader::open(path);
         let reader = reader.map_err(|error| FileError::system("read", WHAT, path, error))?;
-        let opened = NcFile::open(path).map_err(|error| error.to_string());
-        let read = opened.and_then(|file| Self::decode(&file, reader, lengths));
-        read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))
+        let refused = |problem: String, fix| FileError::content(WHAT, path, problem, fix);
+        let file = NcFile::open(path).map_err(|error| refused(error.to_string(), RESTORE))?;
+        Self::decode(&file, reader, lengths).map_err(|problem| refused(problem, FIX))
     }
 
     fn decode(file: &NcFile, reader: PlacedReader, lengths: Lengths) -> Result<Opened, String> {

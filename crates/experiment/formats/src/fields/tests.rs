@@ -222,7 +222,7 @@ fn a_file_that_was_cut_short_is_refused_when_it_is_opened() {
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
     let error = FieldFile::open(&path, Lengths::Metres).err().unwrap().to_string();
-    assert!(error.contains("cut short") && error.contains("streamwise.nc"), "{error}");
+    assert!(error.contains("the file has only") && error.contains("streamwise.nc"), "{error}");
     // One that grows shorter while it is read.
     fs::write(&path, &bytes).unwrap();
     let mut file = FieldFile::open(&path, Lengths::Metres).unwrap();

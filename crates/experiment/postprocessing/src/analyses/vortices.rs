@@ -7,11 +7,11 @@ mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
-use crate::wake_fields::Averaged;
 use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, ROTOR_HZ, TURBINE,
     WIDTH, WIND_SPEED, ZEROS,
 };
+use crate::wake_fields::{Averaged, Wanted};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,

@@ -13,8 +13,7 @@ use analysis::phases::{Decomposer, Decomposition};
 use basis::records::{FieldSetting, Grid, Moments, PhaseAverages};
 use formats::records::{PhaseAveragesWriter, StoredPhaseAverages};
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::path::PathBuf;
 
 /// Averages by phase.
 pub(crate) struct Averaged {
@@ -102,7 +101,6 @@ impl Averaged {
         let keeps_bins = wanted == Wanted::Bins;
         let mut compared = Compared::new(grid.len(), making.sets);
         let mut whole = Strip::default();
-        let began = Instant::now();
         let (plan, batches) = (&making.plan, &making.batches);
         let fields = (&mut instants.file, instants.places.start);
         let done = each_strip(
@@ -111,7 +109,7 @@ impl Averaged {
             keeps_bins || writer.is_some(),
             |read| Ok(compared.look(read)?),
             |points, mut strip| {
-                request.watch.tell(&Told::Share(points.end as f64 / grid.len() as f64, began));
+                request.watch.tell(&Told::Share(points.end as f64 / grid.len() as f64));
                 if let Some(writer) = &mut writer {
                     let each = std::mem::take(&mut strip.each);
                     let mut each = each.into_iter();
