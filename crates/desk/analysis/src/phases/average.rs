@@ -130,8 +130,8 @@ impl PhaseAverager {
         Ok(n_bins)
     }
 
-    /// Takes in all instants of `batch`; `velocity` as in [`PhaseAverager::add`], one instant after the other.
-    /// What comes of it is the same, bit by bit, as if each were taken in alone; but each bin is met once, so
+    /// Takes in all instants of `batch`, whose `velocity` stands one instant after the other. What comes of it
+    /// is the same, bit by bit, as if [`PhaseAverager::add`] took in each alone; but each bin is met once, so
     /// that little memory is moved. Allocates nothing.
     ///
     /// # Errors

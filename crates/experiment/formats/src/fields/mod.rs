@@ -1,7 +1,7 @@
 //! Velocity on regular grids at instants, whoever wrote it: NetCDF, VTK image data, Tecplot's text.
 //!
-//! What is asked for is in memory: an instant, or some points at many. Lengths come in metres, velocities in metres a second, whatever the
-//! units of the file; what is missing in it is not a number.
+//! What is asked for is in memory: an instant, or some points at many. Lengths come in metres, velocities in
+//! metres a second, whatever the units of the file; what is missing in it is not a number.
 
 mod layout;
 mod netcdf;

@@ -55,8 +55,8 @@ pub(super) fn line(n_points: usize) -> Grid {
 }
 
 /// Reads the fields of `file` from instant number `first` on, which the `batches` are of, as `plan` has it.
-/// `look` is shown what was read, `take` is given each strip in its turn, with its points. Bins are kept where
-/// `keeps_bins`. What comes out is the same, bit by bit, whatever the plan.
+/// `look` is shown what was read, `take` is given each strip in its turn, with its points. Bins are kept
+/// where `keeps_bins`. What comes out is the same, bit by bit, whatever the plan.
 pub(super) fn each_strip(
     (file, first): (&mut FieldFile, usize),
     (plan, batches): (&Plan, &[PhaseBatch]),
