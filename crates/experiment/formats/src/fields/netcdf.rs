@@ -31,6 +31,8 @@ pub(super) struct NetCdfFields {
     reader: PlacedReader,
     layouts: [Layout; 3],
     n_instants: usize,
+    /// Points that were asked for, up to which chunk.
+    advised: (Range<usize>, usize),
 }
 
 /// The fields, with their points, instants and what the file tells of them.
@@ -88,7 +90,8 @@ impl NetCdfFields {
         }
         let found = found(file);
         let layouts = layouts.try_into().map_err(|_| "it lacks a component".to_owned())?;
-        Ok((Self { reader, layouts, n_instants }, grid, times, found))
+        let advised = (0..0, 0);
+        Ok((Self { reader, layouts, n_instants, advised }, grid, times, found))
     }
 
     /// On return `velocity` is that at `instants`, one after the other, at `points`.
@@ -100,13 +103,10 @@ impl NetCdfFields {
         velocity: &mut [Vec<f32>; 3],
     ) -> Result<(), FileError> {
         let n_points = points.len();
-        let of_chunk = n_points.max(1) * self.layouts[0].coding.n_bytes();
-        let n_ahead = AHEAD.div_ceil(of_chunk);
-        (1..n_ahead).for_each(|chunk| self.advise(instants.start, chunk, &points));
         for instant in instants.clone() {
             let start = (instant - instants.start) * n_points;
             for (component, values) in velocity.iter_mut().enumerate() {
-                self.advise(instant, component + n_ahead, &points);
+                self.advise(3 * instant + component, &points);
                 let own = &mut values[start..start + n_points];
                 let read = self.read_component(component, instant, points.clone(), own);
                 read.map_err(|error| refusal(path, error))?;
@@ -115,14 +115,21 @@ impl NetCdfFields {
         Ok(())
     }
 
-    /// Asks for `points` of chunk number `chunk`, counted over the components from `instant` on.
-    fn advise(&self, instant: usize, chunk: usize, points: &Range<usize>) {
-        let (instant, layout) = (instant + chunk / 3, &self.layouts[chunk % 3]);
-        if instant < self.n_instants
-            && let Some((at, n_bytes, _)) = layout.place(instant, points)
-        {
-            self.reader.advise(at, n_bytes);
+    /// Asks for `points` of the chunks after number `chunk`, counted over instants and components, as far
+    /// ahead as is useful and was not asked for yet.
+    fn advise(&mut self, chunk: usize, points: &Range<usize>) {
+        let of_chunk = points.len().max(1) * self.layouts[0].coding.n_bytes();
+        let end = (chunk + 1 + AHEAD.div_ceil(of_chunk)).min(3 * self.n_instants);
+        let (asked, until) = &self.advised;
+        let is_under_way = asked == points && (chunk + 1..=end).contains(until);
+        let start = if is_under_way { *until } else { chunk + 1 };
+        for chunk in start..end {
+            let (instant, layout) = (chunk / 3, &self.layouts[chunk % 3]);
+            if let Some((at, n_bytes, _)) = layout.place(instant, points) {
+                self.reader.advise(at, n_bytes);
+            }
         }
+        self.advised = (points.clone(), end);
     }
 
     fn read_component(

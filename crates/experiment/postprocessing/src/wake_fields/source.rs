@@ -90,6 +90,7 @@ impl Fields {
     ///
     /// # Errors
     /// Those of [`Fields::open`].
+    #[cfg(feature = "modes")]
     pub(crate) fn instants(request: &Request) -> Result<Instants, PostprocessingError> {
         match Self::open(request, false)? {
             Self::Instants(instants) => Ok(*instants),
