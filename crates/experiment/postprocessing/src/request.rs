@@ -41,9 +41,12 @@ pub enum Told<'a> {
     Share(f64),
 }
 
+/// What is done with what is told.
+type Listener = dyn Fn(&Told) + Send + Sync;
+
 /// Who is told while an analysis works; nobody at first.
 #[derive(Clone, Default)]
-pub struct Watch(Option<Arc<dyn Fn(&Told) + Send + Sync>>);
+pub struct Watch(Option<Arc<Listener>>);
 
 impl Watch {
     /// `listener` is told.

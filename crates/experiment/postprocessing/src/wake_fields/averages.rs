@@ -35,7 +35,7 @@ pub(crate) struct Averaged {
 enum Made {
     Stored(Box<StoredPhaseAverages>),
     /// Taken apart, and the bins where they were asked for.
-    Now(Decomposition, Vec<Moments>),
+    Now(Box<Decomposition>, Vec<Moments>),
 }
 
 impl Averaged {
@@ -130,7 +130,7 @@ impl Averaged {
         remarks.extend(zeros(instants.file.n_zeros(), n_samples));
         remarks.extend(empty_bins(&head));
         let (setting, rates, compared) = (instants.setting, making.rates, compared.finish());
-        let moments = Made::Now(whole.parts, whole.each);
+        let moments = Made::Now(Box::new(whole.parts), whole.each);
         Ok(Self { path, setting, head, remarks, rates, compared, moments })
     }
 
