@@ -103,23 +103,20 @@ impl Turbine {
         let plate = definition.swashplate.map(|plate| plate.at_rest(settings.pitch));
         let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start(), plate);
         let n_points = definition.n_blades * N_ELEMENTS;
-        let workspace = Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0));
-        let held = if settings.flexible { Vec::new() } else { all_but_the_generator() };
-        let misalignment = PerBlade::splat(definition.n_blades, 0.0);
         let mut turbine = Self {
+            misalignment: PerBlade::splat(definition.n_blades, 0.0),
+            workspace: Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0)),
+            held: if settings.flexible { Vec::new() } else { all_but_the_generator() },
             definition,
             line,
             aerodynamics,
             structure,
             bodies,
-            held,
             facing: Facing { axis: position, rotor: frame, drag: frame.hub },
             frame,
             air_density: settings.air_density,
             smearing_length,
-            misalignment,
             state,
-            workspace,
         };
         turbine.structure.hold(&turbine.held);
         turbine.facing.rotor = turbine.structure.frame(0.0).turned(position, -settings.yaw);
