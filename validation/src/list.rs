@@ -193,6 +193,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     tunnel::TURBINE,
     tunnel::HELIX,
+    tunnel::TIP_VORTICES,
+    tunnel::FREE_WAKE,
     Validation {
         name: "structure",
         about: "natural frequencies beside published ones, energy of free motion, loads of a spinning rotor in closed form",

@@ -1,5 +1,6 @@
 //! The tunnel turbine with its swashplate, and the helix on the first of two, beside a published experiment.
 
+mod vortices;
 mod wake;
 
 use crate::Row;
@@ -129,21 +130,43 @@ pub fn tunnel_helix() -> Vec<Row> {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };
-    let mut rows = baseline(&summaries);
+    let mut rows = baseline(&summaries, "lattice, walls felt");
     rows.extend(delivered(&summaries, "lattice"));
-    rows.extend(powers(&summaries));
+    rows.extend(powers(&summaries, "TI 1 %"));
+    rows.extend(wake::rows(&folder));
+    rows
+}
+
+/// `cases/tunnel-tip-vortices.toml`: what the tip vortices of the first turbine do in free vortices.
+pub fn tunnel_tip_vortices() -> Vec<Row> {
+    match summaries(Carried::Shipped("tunnel-tip-vortices"), "tunnel-tip-vortices", Vec::new()) {
+        Ok((_, folder)) => vortices::rows(&folder),
+        Err(problem) => failure(problem),
+    }
+}
+
+/// `cases/tunnel-helix-free-wake.toml`: two turbines in free vortices.
+pub fn tunnel_free_wake() -> Vec<Row> {
+    let case = Carried::Shipped("tunnel-helix-free-wake");
+    let (summaries, folder) = match summaries(case, "tunnel-free-wake", Vec::new()) {
+        Ok(done) => done,
+        Err(problem) => return failure(problem),
+    };
+    let mut rows = baseline(&summaries, "free wake");
+    rows.extend(delivered(&summaries, "free wake"));
+    rows.extend(powers(&summaries, "free wake"));
     rows.extend(wake::rows(&folder));
     rows
 }
 
 /// Power and speed of T1 without a helix.
-fn baseline(summaries: &[Summary]) -> Vec<Row> {
+fn baseline(summaries: &[Summary], air: &str) -> Vec<Row> {
     let Some(summary) = find(summaries, "baseline") else { return Vec::new() };
     let (first, diameter) = (&summary.turbines[0], summary.conditions.rotor_diameter);
     let wind = 0.5 * AIR_DENSITY * PI / 4.0 * diameter * diameter * WIND_SPEED.powi(3);
     vec![
         Row {
-            what: "electrical power coefficient of T1, baseline, lattice, walls felt".to_owned(),
+            what: format!("electrical power coefficient of T1, baseline, {air}"),
             measured: first.power.mean / wind,
             expected: POWER_COEFFICIENT,
             tolerance: Within(0.02),
@@ -162,13 +185,13 @@ fn baseline(summaries: &[Summary]) -> Vec<Row> {
 }
 
 /// What helices cost and give.
-fn powers(summaries: &[Summary]) -> Vec<Row> {
+fn powers(summaries: &[Summary], air: &str) -> Vec<Row> {
     let mut rows = Vec::new();
     let percent = |gain: Option<f64>| gain.map_or(f64::NAN, |gain| 100.0 * gain);
     let mut gains = [f64::NAN; 3];
     for ((run, strouhal, amplitude, expected, ratio), kept) in RUNS.into_iter().zip(&mut gains) {
         let summary = find(summaries, run);
-        let conditions = format!("{run}, {amplitude}°, St {strouhal}, 5 D, 5 m/s, TI 1 %");
+        let conditions = format!("{run}, {amplitude}°, St {strouhal}, 5 D, 5 m/s, {air}");
         *kept = percent(summary.and_then(|s| s.array_power_gain).map(|gain| gain.mean));
         rows.push(Row {
             what: format!("gain of both turbines, {conditions}"),

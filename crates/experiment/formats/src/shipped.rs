@@ -84,6 +84,12 @@ pub const CASES: &[ShippedCase] = &[
         after: None,
     },
     ShippedCase {
+        name: "tunnel-tip-vortices",
+        file: include_str!("../../../../cases/tunnel-tip-vortices.toml"),
+        minutes: 8.0,
+        after: None,
+    },
+    ShippedCase {
         name: "wake-steering",
         file: include_str!("../../../../cases/wake-steering.toml"),
         minutes: 15.0,
