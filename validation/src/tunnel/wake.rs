@@ -61,7 +61,7 @@ fn bin_of(plane: &StoredPhaseAverages, index: usize) -> Result<Moments, String> 
 }
 
 /// Mean and twice the deviation over the phases of the fraction of available power on a plane (–).
-fn of_disc(plane: &StoredPhaseAverages) -> Result<[f64; 2], String> {
+pub(super) fn of_disc(plane: &StoredPhaseAverages) -> Result<[f64; 2], String> {
     let (grid, setting) = (&plane.head.grid, &plane.setting);
     let (place, radius) =
         ((grid.origin[0], [setting.hub[1], setting.hub[2]]), 0.5 * setting.diameter);

@@ -12,7 +12,7 @@ use crate::wake_fields::settings::{
 use crate::wake_fields::{Averaged, conditions};
 use analysis::entrainment::{FluxPoint, wake_edge};
 use analysis::phases::Decomposition;
-use found::{DiscRow, Energy, RADIUS, SMOOTHING, discs};
+use found::{AtPhase, DiscRow, Energy, RADIUS, SMOOTHING, discs};
 use report::text_table::{Column, TextTable};
 use serde_json::json;
 
@@ -118,6 +118,7 @@ fn json(
             "deviation_over_phases": row.deviation,
             "least": row.range[0],
             "greatest": row.range[1],
+            "by_phase": row.by_phase.iter().map(by_phase).collect::<Vec<_>>(),
         })
     });
     json!({
@@ -126,6 +127,14 @@ fn json(
         "fluxes": fluxes.collect::<Vec<_>>(),
         "available_power": discs.collect::<Vec<_>>(),
         "edges": edges(found, parts),
+    })
+}
+
+fn by_phase(at: &AtPhase) -> serde_json::Value {
+    json!({
+        "rotor_azimuth_deg": at.rotor.to_degrees(),
+        "helix_azimuth_deg": at.helix.map(f64::to_degrees),
+        "f_ap": at.fraction,
     })
 }
 

@@ -3,12 +3,12 @@
 use super::kept::{Kept, Run};
 use crate::PostprocessingError;
 use crate::analyses::entrainment::figures::{
-    DISTANCE, POWER, UNIT, disc_line, flux_line, flux_map,
+    DISTANCE, POWER, UNIT, disc_line, flux_line, flux_map, phase_figure, phase_panel,
 };
 use crate::analyses::entrainment::found::{DiscRow, Energy, PARTS, Through, discs};
 use crate::wake_fields::conditions;
 use basis::records::FieldSetting;
-use report::{MapFigure, Signals, TrackFigure, TrackLine, TrackRow};
+use report::{CurveFigure, CurvePanel, MapFigure, Signals, TrackFigure, TrackLine, TrackRow};
 
 /// What was found run by run.
 #[derive(Default)]
@@ -93,6 +93,7 @@ impl Energies {
         let powers: Vec<TrackFigure> =
             self.discs.iter().filter_map(|(of, runs)| power(of, runs, &mut self.notes)).collect();
         let fluxes = self.fluxes.iter().map(|(field, runs)| flux(field, runs));
+        let curves = self.discs.iter().filter_map(|(of, runs)| by_phase(of, runs)).collect();
         Signals {
             title: "Energy that enters the wake".to_owned(),
             lead: format!(
@@ -100,6 +101,7 @@ impl Energies {
             ),
             maps: self.maps,
             tracks: powers.into_iter().chain(fluxes).collect(),
+            curves,
             notes: self.notes,
             ..Signals::default()
         }
@@ -187,6 +189,17 @@ fn power(of: &str, runs: &[OfRun<Discs>], notes: &mut Vec<String>) -> Option<Tra
         rows: vec![TrackRow { label: POWER.to_owned(), is_angle: false, lines }],
         mark: None,
     })
+}
+
+/// Power in the furthest disc over the azimuth of the helix, runs with one beside each other; none where no run
+/// has one.
+fn by_phase(of: &str, runs: &[OfRun<Discs>]) -> Option<CurveFigure> {
+    let panel = |run: &OfRun<Discs>| {
+        phase_panel(&run.what.setting, run.what.rows.last()?, run.name.clone())
+    };
+    let panels: Vec<CurvePanel> = runs.iter().filter_map(panel).collect();
+    let told = || samples(runs, |discs| (&discs.setting, &discs.samples));
+    (!panels.is_empty()).then(|| phase_figure(panels, of, &told()))
 }
 
 /// Conditions and samples of all `runs`.

@@ -3,8 +3,12 @@
 use super::found::{DiscRow, Energy, PARTS, Part, Through};
 use crate::wake_fields::{Averaged, axes, conditions, panel};
 use analysis::phases::Decomposition;
+use analysis::vortices::sine_fit;
 use basis::records::{FieldSetting, stress_of};
-use report::{Along, MapColours, MapFigure, Signals, TrackFigure, TrackLine, TrackRow};
+use report::{
+    Along, CurveAt, CurveFigure, CurvePanel, MapColours, MapFigure, Signals, TrackFigure,
+    TrackLine, TrackRow,
+};
 
 /// In what fluxes are drawn, and its name: of U³ they are thousandths.
 const THOUSANDTH: f64 = 1e-3;
@@ -35,7 +39,54 @@ pub(super) fn signals(
     };
     let tracks = if tracks.rows.is_empty() { Vec::new() } else { vec![tracks] };
     let maps = vec![flux_map(found, parts)];
-    Signals { title: "Entrainment".to_owned(), maps, tracks, ..Signals::default() }
+    let panels = discs.last().and_then(|disc| phase_panel(&found.setting, disc, String::new()));
+    let curves = panels.map(|panel| phase_figure(vec![panel], "", &caption));
+    let curves = curves.into_iter().collect();
+    Signals { title: "Entrainment".to_owned(), maps, tracks, curves, ..Signals::default() }
+}
+
+/// Available power in `disc` over the azimuth of the helix, bin by bin, titled `name` and the distance; none
+/// where the helix plays no part.
+pub(crate) fn phase_panel(
+    setting: &FieldSetting,
+    disc: &DiscRow,
+    name: String,
+) -> Option<CurvePanel> {
+    let at = disc.by_phase.iter().filter_map(|one| Some((one.helix?, one.fraction)));
+    let (angles, values): (Vec<f64>, Vec<f64>) = at.unzip();
+    let fit = sine_fit(&angles, &values).ok()?;
+    let curve = (0..=360).step_by(5).map(|degrees| {
+        let at = f64::from(degrees);
+        let mean = fit.mean + fit.amplitude * (at.to_radians() + fit.phase).sin();
+        CurveAt { at, mean, band_95: [mean - 2.0 * fit.scatter, mean + 2.0 * fit.scatter] }
+    });
+    let place = format!("{:.1} D", disc.x / setting.diameter);
+    Some(CurvePanel {
+        title: [name, place]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(", "),
+        points: angles.iter().zip(&values).map(|(a, v)| [a.to_degrees(), *v]).collect(),
+        curve: curve.collect(),
+        mark: None,
+    })
+}
+
+/// The figure of `panels`, of the fields `of`, taken as `samples` tells.
+pub(crate) fn phase_figure(panels: Vec<CurvePanel>, of: &str, samples: &str) -> CurveFigure {
+    let suffix =
+        |between: &str| if of.is_empty() { String::new() } else { format!("{between}{of}") };
+    CurveFigure {
+        name: format!("available-power-over-helix-azimuth{}", suffix("-")),
+        title: format!("Available power by phase of the helix{}", suffix(": ")),
+        caption: format!(
+            "Each cross is a bin of rotor and helix azimuth at the furthest disc; the line is a sine through them, the band two deviations of what it leaves (bins share instants, so that it is no interval). {samples}"
+        ),
+        along: "helix azimuth (deg)".to_owned(),
+        label: POWER.to_owned(),
+        panels,
+    }
 }
 
 /// All parts of what crosses one line or tube, over the distance.

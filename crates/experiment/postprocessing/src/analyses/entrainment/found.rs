@@ -37,11 +37,24 @@ pub(crate) struct Through {
     pub(crate) points: Vec<FluxPoint>,
 }
 
-/// Power in a disc at one distance.
+/// Power in a disc in the velocity of one bin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct AtPhase {
+    /// Rotor azimuth at the bin's middle (rad).
+    pub(crate) rotor: f64,
+    /// Helix azimuth there (rad); none where the helix plays no part.
+    pub(crate) helix: Option<f64>,
+    /// Fraction of available power (–).
+    pub(crate) fraction: f64,
+}
+
+/// Power in a disc at one distance.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscRow {
     /// Distance from the rotor (m).
     pub(crate) x: f64,
+    /// Bin by bin.
+    pub(crate) by_phase: Vec<AtPhase>,
     /// Mean over the bins (–).
     pub(crate) mean: f64,
     /// Standard deviation over the bins (–).
@@ -127,35 +140,36 @@ pub(crate) fn discs(
     let (grid, setting) = (found.grid(), &found.setting);
     let (hub, radius) = (setting.hub, 0.5 * setting.diameter);
     let n_x = grid.n_points[0];
-    let mut sums = vec![[0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY, 0.0]; n_x];
+    let mut discs = vec![Vec::new(); n_x];
     let mut why = None;
-    for index in 0..found.head.bins.len() {
-        if found.head.bins[index].n_instants == 0 {
+    for (index, bin) in found.head.bins.iter().enumerate() {
+        if bin.n_instants == 0 {
             continue;
         }
         let u = widened(&found.bin(index)?.mean[0]);
-        for (step, sum) in sums.iter_mut().enumerate() {
+        for (step, disc) in discs.iter_mut().enumerate() {
             let x = grid.coordinate(0, step);
             match available_power(grid, &u, (x, [hub[1], hub[2]]), radius, setting.wind_speed) {
                 Ok(one) => {
-                    sum[0] += one.fraction;
-                    sum[1] += one.fraction.powi(2);
-                    sum[2] = sum[2].min(one.fraction);
-                    sum[3] = sum[3].max(one.fraction);
-                    sum[4] += 1.0;
+                    let (rotor, helix) = (bin.rotor, bin.helix);
+                    disc.push(AtPhase { rotor, helix, fraction: one.fraction });
                 }
                 Err(error) => why = Some(format!("available power: {error}")),
             }
         }
     }
-    let row = |(step, [sum, squares, low, high, n]): (usize, &[f64; 5])| {
-        let mean = sum / n;
-        (*n > 0.0).then(|| DiscRow {
-            x: grid.coordinate(0, step) - hub[0],
-            mean,
-            deviation: (squares / n - mean * mean).max(0.0).sqrt(),
-            range: [*low, *high],
-        })
-    };
-    Ok((sums.iter().enumerate().filter_map(row).collect(), why))
+    let rows = discs.into_iter().enumerate().filter(|(_, disc)| !disc.is_empty());
+    let rows = rows.map(|(step, disc)| DiscRow::of(grid.coordinate(0, step) - hub[0], disc));
+    Ok((rows.collect(), why))
+}
+
+impl DiscRow {
+    /// The disc at `x` (m) behind the rotor, of its bins.
+    fn of(x: f64, by_phase: Vec<AtPhase>) -> Self {
+        let (n, values) = (by_phase.len() as f64, || by_phase.iter().map(|one| one.fraction));
+        let mean = values().sum::<f64>() / n;
+        let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / n;
+        let range = [values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max)];
+        Self { x, mean, deviation: variance.sqrt(), range, by_phase }
+    }
 }
