@@ -14,8 +14,6 @@ use std::path::Path;
 
 /// Blades, whose vortices make as many pairs.
 const N_BLADES: usize = 3;
-/// Leapfrogs that a place is told of at least, on one side of the hub (–).
-const FEWEST: usize = 4;
 /// Accepted distance of places that are told as "around" a number (D), as of the flux.
 const PLACE_TOLERANCE: f64 = 0.25;
 /// Accepted distance of the third vortex's strength over the others', told as "almost twice as low" (–).
@@ -70,6 +68,7 @@ struct Sine {
     side: String,
     mean_m: f64,
     amplitude_m: f64,
+    half_widths_95: [f64; 3],
     n: usize,
 }
 
@@ -87,23 +86,23 @@ impl Found {
         (x - self.setting.hub_m[0]) / self.setting.diameter_m
     }
 
-    /// Where `pair` leapfrogs (D), the mean of the places on `side` of the hub; none of too few.
-    fn place(&self, pair: usize, side: &str, fewest: usize) -> Option<f64> {
+    /// Where `pair` leapfrogs (D), the mean of the places on `side` of the hub, if it does.
+    fn place(&self, pair: usize, side: &str) -> Option<f64> {
         let of_pair = self.leapfrogs.iter().filter(|one| one.pair == pair && one.side == side);
         let places: Vec<f64> = of_pair.map(|one| self.behind(one.x_m)).collect();
-        let mean = places.iter().sum::<f64>() / places.len() as f64;
-        if places.len() < fewest {
+        if places.is_empty() {
             return None;
         }
+        let mean = places.iter().sum::<f64>() / places.len() as f64;
         tell!("{side}: pair {pair} leapfrogs at {mean:.2} D, mean of {}", places.len());
         Some(mean)
     }
 
     /// The place at which each pair leapfrogs, the mean of the sides on which it does (D), the nearest first,
     /// with the pair's number from 1.
-    fn places(&self, fewest: usize) -> Vec<(usize, f64)> {
+    fn places(&self) -> Vec<(usize, f64)> {
         let place = |pair: usize| {
-            let on_side = |side| self.place(pair, side, fewest);
+            let on_side = |side| self.place(pair, side);
             let places: Vec<f64> = ["above", "below"].into_iter().filter_map(on_side).collect();
             (!places.is_empty()).then(|| (pair, places.iter().sum::<f64>() / places.len() as f64))
         };
@@ -112,21 +111,25 @@ impl Found {
         places
     }
 
-    /// Amplitude of the sine through the places of `pair` over the azimuth of the helix, the mean of both
-    /// sides (D).
-    fn amplitude(&self, pair: usize) -> f64 {
+    /// Mean place and amplitude of the sine through the places of `pair` over the azimuth of the helix, each the
+    /// mean of both sides (D). The mean of the places themselves would weigh azimuths by how often vortices
+    /// happen to be followed there.
+    fn sine(&self, pair: usize) -> [f64; 2] {
         let sines: Vec<&Sine> = self.leapfrog_sines.iter().filter(|one| one.pair == pair).collect();
-        let sum: f64 = sines.iter().map(|sine| sine.amplitude_m).sum();
+        let over = |length: f64| length / self.setting.diameter_m;
         for sine in &sines {
-            let [place, amplitude] =
-                [sine.mean_m, sine.amplitude_m].map(|length| length / self.setting.diameter_m);
+            let [place, amplitude] = [sine.mean_m, sine.amplitude_m].map(over);
+            let [of_place, of_amplitude] = [0, 1].map(|k| over(sine.half_widths_95[k]));
             tell!(
-                "{}: {place:.2} D, amplitude {amplitude:.2} D, of {} leapfrogs",
+                "{}: {place:.2} ± {of_place:.2} D, amplitude {amplitude:.2} ± {of_amplitude:.2} D, of {} leapfrogs",
                 sine.side,
                 sine.n
             );
         }
-        sum / sines.len() as f64 / self.setting.diameter_m
+        let mean = |of: fn(&Sine) -> f64| {
+            over(sines.iter().map(|sine| of(sine)).sum::<f64>() / sines.len() as f64)
+        };
+        [mean(|sine| sine.mean_m), mean(|sine| sine.amplitude_m)]
     }
 
     /// The first place of all (D).
@@ -198,7 +201,7 @@ fn left(folder: &Path) -> Result<Vec<Row>, String> {
 
 fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
     // Each pair of the baseline meets one phase: it leapfrogs once in each revolution, at one place.
-    let places = baseline.places(1);
+    let places = baseline.places();
     let place = |number: usize| places.get(number).map_or(f64::NAN, |(_, place)| *place);
     let row = |what: &str, measured: f64, (expected, tolerance), unit| Row {
         what: what.to_owned(),
@@ -230,11 +233,11 @@ fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
         ),
     ];
     let first = places.first().map_or(1, |(pair, _)| *pair);
-    for (name, run) in [("cw", cw), ("ccw", ccw)] {
-        let of_run = run.places(FEWEST).into_iter().find(|(pair, _)| *pair == first);
+    let sines = [cw.sine(first), ccw.sine(first)];
+    for ((name, run), [mean, _]) in [("cw", cw), ("ccw", ccw)].into_iter().zip(sines) {
         rows.push(row(
-            &format!("mean place where that first pair leapfrogs, {name} over baseline"),
-            ratio(of_run.map_or(f64::NAN, |(_, place)| place), place(0)),
+            &format!("mean of the sine through places where that first pair leapfrogs, {name} over baseline"),
+            ratio(mean, place(0)),
             (1.0, AtMost),
             "–",
         ));
@@ -252,8 +255,8 @@ fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
         "D",
     ));
     rows.push(row(
-        "amplitude of that place over the azimuth of the helix, cw over ccw",
-        ratio(cw.amplitude(first), ccw.amplitude(first)),
+        "amplitude of that sine over the azimuth of the helix, cw over ccw",
+        ratio(sines[0][1], sines[1][1]),
         (1.0, AtLeast),
         "–",
     ));
