@@ -4,7 +4,7 @@ use super::TUNNEL;
 use super::wake::of_disc;
 use crate::Row;
 use crate::folds::ratio;
-use crate::row::Tolerance::{AtLeast, AtMost, Within};
+use crate::row::Tolerance::{self, AtLeast, AtMost, Within};
 use crate::studies::failure;
 use formats::records::{RunFolder, StoredPhaseAverages};
 use postprocessing::ANALYSES;
@@ -111,9 +111,9 @@ impl Found {
         places
     }
 
-    /// Mean place and amplitude of the sine through the places of `pair` over the azimuth of the helix, each the
-    /// mean of both sides (D). The mean of the places themselves would weigh azimuths by how often vortices
-    /// happen to be followed there.
+    /// Mean place and amplitude of the sine through the places of `pair` over the azimuth of the helix, each
+    /// the mean of both sides (D). The mean of the places themselves would weigh azimuths by how often
+    /// vortices happen to be followed there.
     fn sine(&self, pair: usize) -> [f64; 2] {
         let sines: Vec<&Sine> = self.leapfrog_sines.iter().filter(|one| one.pair == pair).collect();
         let over = |length: f64| length / self.setting.diameter_m;
@@ -121,7 +121,7 @@ impl Found {
             let [place, amplitude] = [sine.mean_m, sine.amplitude_m].map(over);
             let [of_place, of_amplitude] = [0, 1].map(|k| over(sine.half_widths_95[k]));
             tell!(
-                "{}: {place:.2} ± {of_place:.2} D, amplitude {amplitude:.2} ± {of_amplitude:.2} D, of {} leapfrogs",
+                "{}: {place:.2} ± {of_place:.2} D, amplitude {amplitude:.2} ± {of_amplitude:.2} D, {} leapfrogs",
                 sine.side,
                 sine.n
             );
@@ -202,17 +202,24 @@ fn left(folder: &Path) -> Result<Vec<Row>, String> {
 fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
     // Each pair of the baseline meets one phase: it leapfrogs once in each revolution, at one place.
     let places = baseline.places();
+    let mut rows = of_baseline(baseline, &places);
+    let first = places.first().copied().unwrap_or((1, f64::NAN));
+    rows.extend(of_helices(baseline, first, [cw, ccw]));
+    rows
+}
+
+fn row(
+    what: &str,
+    measured: f64,
+    (expected, tolerance): (f64, Tolerance),
+    unit: &'static str,
+) -> Row {
+    Row { what: what.to_owned(), measured, expected, tolerance, unit, source: TUNNEL }
+}
+
+fn of_baseline(baseline: &Found, places: &[(usize, f64)]) -> Vec<Row> {
     let place = |number: usize| places.get(number).map_or(f64::NAN, |(_, place)| *place);
-    let row = |what: &str, measured: f64, (expected, tolerance), unit| Row {
-        what: what.to_owned(),
-        measured,
-        expected,
-        tolerance,
-        unit,
-        source: TUNNEL,
-    };
-    let (strength, weakest) = baseline.strengths();
-    let mut rows = vec![
+    vec![
         row(
             "place where the first pair leapfrogs, baseline, to which a blade's mounting is fitted",
             place(0),
@@ -227,17 +234,22 @@ fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
         ),
         row(
             "vorticity of the weakest blade's vortices over that of the others', baseline",
-            weakest,
+            baseline.strengths().1,
             (0.5, Within(STRENGTH_TOLERANCE)),
             "–",
         ),
-    ];
-    let first = places.first().map_or(1, |(pair, _)| *pair);
+    ]
+}
+
+/// What helices do to the vortices, beside the `baseline` whose `first` pair leapfrogs at a place (D).
+fn of_helices(baseline: &Found, (first, place): (usize, f64), [cw, ccw]: [&Found; 2]) -> Vec<Row> {
+    let strength = baseline.strengths().0;
     let sines = [cw.sine(first), ccw.sine(first)];
+    let mut rows = Vec::new();
     for ((name, run), [mean, _]) in [("cw", cw), ("ccw", ccw)].into_iter().zip(sines) {
         rows.push(row(
             &format!("mean of the sine through places where that first pair leapfrogs, {name} over baseline"),
-            ratio(mean, place(0)),
+            ratio(mean, place),
             (1.0, AtMost),
             "–",
         ));

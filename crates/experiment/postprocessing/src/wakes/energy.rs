@@ -183,7 +183,8 @@ fn power(of: &str, runs: &[OfRun<Discs>], notes: &mut Vec<String>) -> Option<Tra
         name: format!("available-power-over-distance-{of}"),
         title: format!("Fraction of available power: {of}"),
         caption: format!(
-            "Mean of (u/U)³ over a disc as large as the rotor, behind its hub, of the velocity of each bin; mean over the bins, ± 2σ over them. {}",
+            "Mean of (u/U)³ over a disc as large as the rotor, behind its hub, of the velocity of each bin; \
+             mean over the bins, ± 2σ over them. {}",
             samples(runs, |discs| (&discs.setting, &discs.samples))
         ),
         rows: vec![TrackRow { label: POWER.to_owned(), is_angle: false, lines }],
@@ -191,8 +192,8 @@ fn power(of: &str, runs: &[OfRun<Discs>], notes: &mut Vec<String>) -> Option<Tra
     })
 }
 
-/// Power in the furthest disc over the azimuth of the helix, runs with one beside each other; none where no run
-/// has one.
+/// Power in the furthest disc over the azimuth of the helix, runs with one beside each other; none where no
+/// run has one.
 fn by_phase(of: &str, runs: &[OfRun<Discs>]) -> Option<CurveFigure> {
     let panel = |run: &OfRun<Discs>| {
         phase_panel(&run.what.setting, run.what.rows.last()?, run.name.clone())
