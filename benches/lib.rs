@@ -2,4 +2,5 @@
 
 pub mod arithmetic;
 pub mod bandwidth;
+pub mod disk;
 mod huge;

@@ -2,7 +2,9 @@
 
 use report::text_table;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Something that can be set of an analysis, and may be left out.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +32,45 @@ pub enum Takes {
     Choice(&'static [(&'static str, &'static str)]),
 }
 
+/// What an analysis that takes long tells while it works.
+#[derive(Clone, Copy, Debug)]
+pub enum Told<'a> {
+    /// What it will cost, in words.
+    Cost(&'a str),
+    /// Share of the work that is done (–).
+    Share(f64),
+}
+
+/// What is done with what is told.
+type Listener = dyn Fn(&Told) + Send + Sync;
+
+/// Who is told while an analysis works; nobody at first.
+#[derive(Clone, Default)]
+pub struct Watch(Option<Arc<Listener>>);
+
+impl Watch {
+    /// `listener` is told.
+    pub fn new(listener: impl Fn(&Told) + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(listener)))
+    }
+
+    /// Tells who watches.
+    pub(crate) fn tell(&self, told: &Told) {
+        if let Some(listener) = &self.0 {
+            listener(told);
+        }
+    }
+}
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let who = if self.0.is_some() { "somebody" } else { "nobody" };
+        formatter.debug_tuple("Watch").field(&who).finish()
+    }
+}
+
 /// A request to an analysis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Request {
     /// Folders of the records.
     pub folders: Vec<PathBuf>,
@@ -39,6 +78,8 @@ pub struct Request {
     pub values: BTreeMap<String, Vec<String>>,
     /// Columns that tables of the text may take (–); those of [`text_table::WIDTH`] when left out.
     pub columns: Option<usize>,
+    /// Who is told while it takes long.
+    pub watch: Watch,
 }
 
 impl Request {

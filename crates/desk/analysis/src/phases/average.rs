@@ -1,11 +1,11 @@
 //! Sums by phase that take instants as they come.
 
+use super::batch::{PhaseBatch, PhaseInstant};
+use super::sums::{POINT_BYTES, Sums};
 use super::{Bins, PhaseError};
-use basis::records::{Grid, Moments, PhaseAverages, PhaseBin, STRESSES};
+use basis::records::{Grid, Moments, PhaseAverages, PhaseBin};
 use serde::{Deserialize, Serialize};
 
-/// Memory of a point in a bin (bytes): count, three sums, six sums of products.
-pub const POINT_BYTES: u64 = (size_of::<u32>() + 9 * size_of::<f64>()) as u64;
 /// Memory of a point beside its bins (bytes): the velocity from which sums are taken.
 const REFERENCE_BYTES: u64 = 3 * size_of::<f32>() as u64;
 
@@ -32,68 +32,6 @@ pub struct PhaseAverager {
     last: Option<f64>,
     /// Latest instant of all (s).
     latest: f64,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Sums {
-    n: Vec<u32>,
-    first: [Vec<f64>; 3],
-    second: [Vec<f64>; 6],
-}
-
-impl Sums {
-    fn new(n_points: usize) -> Self {
-        Self {
-            n: vec![0; n_points],
-            first: std::array::from_fn(|_| vec![0.0; n_points]),
-            second: std::array::from_fn(|_| vec![0.0; n_points]),
-        }
-    }
-
-    /// Adds `velocity` less `reference` at each point where it has no hole.
-    fn add(&mut self, velocity: [&[f32]; 3], reference: &[Vec<f32>; 3]) {
-        let n_points = self.n.len();
-        let [u, v, w] = velocity.map(|values| &values[..n_points]);
-        let [r, s, t] = reference.each_ref().map(|values| &values[..n_points]);
-        let [a, b, c] = self.first.each_mut().map(|sums| &mut sums[..n_points]);
-        let [aa, bb, cc, ab, ac, bc] = self.second.each_mut().map(|sums| &mut sums[..n_points]);
-        for (i, n) in self.n.iter_mut().enumerate() {
-            let pairs = [[u[i], r[i]], [v[i], s[i]], [w[i], t[i]]];
-            let away = pairs.map(|[value, from]| f64::from(value) - f64::from(from));
-            let is_there = (away[0] + away[1] + away[2]).is_finite();
-            let [x, y, z] = away.map(|away| if is_there { away } else { 0.0 });
-            *n += u32::from(is_there);
-            a[i] += x;
-            b[i] += y;
-            c[i] += z;
-            aa[i] += x * x;
-            bb[i] += y * y;
-            cc[i] += z * z;
-            ab[i] += x * y;
-            ac[i] += x * z;
-            bc[i] += y * z;
-        }
-    }
-
-    fn moments(&self, reference: &[Vec<f32>; 3]) -> Moments {
-        let over = |sum: f64, i: usize| sum / f64::from(self.n[i]);
-        let mean = |component: usize| {
-            let sums = self.first[component].iter().enumerate();
-            sums.map(move |(i, sum)| (f64::from(reference[component][i]) + over(*sum, i)) as f32)
-        };
-        let stress = |place: usize| {
-            let [first, second] = STRESSES[place].map(|component| &self.first[component]);
-            let sums = self.second[place].iter().enumerate();
-            sums.map(move |(i, sum)| {
-                (over(*sum, i) - over(first[i], i) * over(second[i], i)) as f32
-            })
-        };
-        Moments {
-            n_samples: self.n.clone(),
-            mean: std::array::from_fn(|component| mean(component).collect()),
-            stress: std::array::from_fn(|place| stress(place).collect()),
-        }
-    }
 }
 
 impl PhaseAverager {
@@ -142,6 +80,22 @@ impl PhaseAverager {
         self.inside.fill(false);
     }
 
+    /// On return nothing is taken in, on the points of `grid`; allocates where there were fewer before.
+    pub fn begin_anew(&mut self, grid: Grid) {
+        let n_points = grid.len();
+        self.grid = grid;
+        for values in &mut self.reference {
+            values.clear();
+            values.resize(n_points, f32::NAN);
+        }
+        self.all.clear(n_points);
+        self.each.iter_mut().for_each(|sums| sums.clear(n_points));
+        self.n_instants.fill(0);
+        self.n_visits.fill(0);
+        (self.n_holes, self.first, self.latest) = (0, None, 0.0);
+        self.begin_record();
+    }
+
     /// Takes in `velocity` (m/s, u, v, w in the order of the grid; not a number where there is a hole) at
     /// `time` (s), at the azimuths `rotor` and, where the bins ask for it, `helix` (rad). Gives the number of
     /// bins that it fell into. Allocates nothing.
@@ -156,61 +110,99 @@ impl PhaseAverager {
         helix: Option<f64>,
         velocity: [&[f32]; 3],
     ) -> Result<usize, PhaseError> {
-        let helix = self.checked(time, rotor, helix, velocity)?;
-        let [u, v, w] = velocity;
-        let [r, s, t] = &mut self.reference;
-        for i in 0..u.len() {
-            let is_there = (u[i] + v[i] + w[i]).is_finite();
-            self.n_holes += u64::from(!is_there);
-            if is_there && r[i].is_nan() {
-                (r[i], s[i], t[i]) = (u[i], v[i], w[i]);
-            }
-        }
-        self.all.add(velocity, &self.reference);
+        self.check_points(1, velocity)?;
+        let helix = PhaseInstant { time, rotor, helix }.checked(&self.bins, self.last)?;
+        self.find_reference(velocity);
+        self.all.add(&[0], velocity, &self.reference);
         let mut n_bins = 0;
         let mut members = self.bins.of_instant(rotor, helix).peekable();
         for index in 0..self.bins.len() {
             let is_in = members.next_if_eq(&index).is_some();
             if is_in {
-                self.each[index].add(velocity, &self.reference);
+                self.each[index].add(&[0], velocity, &self.reference);
                 self.n_instants[index] += 1;
                 self.n_visits[index] += u64::from(!self.inside[index]);
                 n_bins += 1;
             }
             self.inside[index] = is_in;
         }
-        self.first.get_or_insert(time);
-        self.last = Some(time);
-        self.latest = time;
+        self.passed([time; 2]);
         Ok(n_bins)
     }
 
-    /// The helix azimuth of an instant that can be taken in (rad); zero where the bins do not ask for one.
-    fn checked(
-        &self,
-        time: f64,
-        rotor: f64,
-        helix: Option<f64>,
+    /// Takes in all instants of `batch`, whose `velocity` stands one instant after the other. What comes of
+    /// it is the same, bit by bit, as if [`PhaseAverager::add`] took in each alone; but each bin is met once,
+    /// so that little memory is moved. Allocates nothing.
+    ///
+    /// # Errors
+    /// [`PhaseError`] for other points, a time that runs back; then nothing has changed.
+    ///
+    /// # Panics
+    /// Where the batch is of other bins.
+    pub fn add_batch(
+        &mut self,
+        batch: &PhaseBatch,
         velocity: [&[f32]; 3],
-    ) -> Result<f64, PhaseError> {
-        let expected = self.grid.len();
-        if let Some(odd) = velocity.iter().find(|values| values.len() != expected) {
-            return Err(PhaseError::Points { found: odd.len(), expected });
+    ) -> Result<(), PhaseError> {
+        assert_eq!(batch.bins, self.bins, "a batch of the same bins");
+        self.check_points(batch.len(), velocity)?;
+        let [time, _] = batch.span;
+        if let Some(before) = self.last.filter(|before| time <= *before) {
+            return Err(PhaseError::TimeRunsBack { time, before });
         }
-        let helix = match (self.bins.helix_width(), helix) {
-            (None, _) => 0.0,
-            (Some(_), Some(helix)) => helix,
-            (Some(_), None) => return Err(PhaseError::NoHelix { time }),
-        };
-        for (what, value) in [("time", time), ("rotor azimuth", rotor), ("helix azimuth", helix)] {
-            if !value.is_finite() {
-                return Err(PhaseError::NotFinite { what, value, time });
+        self.find_reference(velocity);
+        self.all.add(&batch.all, velocity, &self.reference);
+        for (index, members) in batch.each.iter().enumerate() {
+            if !members.is_empty() {
+                self.each[index].add(members, velocity, &self.reference);
+            }
+            let (n_visits, is_in) = batch.visits(index, self.inside[index]);
+            self.n_instants[index] += members.len() as u64;
+            self.n_visits[index] += n_visits;
+            self.inside[index] = is_in;
+        }
+        self.passed(batch.span);
+        Ok(())
+    }
+
+    /// That `velocity` has a value for each point at `n_instants`.
+    fn check_points(&self, n_instants: usize, velocity: [&[f32]; 3]) -> Result<(), PhaseError> {
+        let expected = n_instants * self.grid.len();
+        match velocity.iter().find(|values| values.len() != expected) {
+            Some(odd) => Err(PhaseError::Points { found: odd.len(), expected }),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the first of `velocity` without a hole where there is no reference yet, and counts holes.
+    fn find_reference(&mut self, velocity: [&[f32]; 3]) {
+        let n_points = self.grid.len().max(1);
+        let [r, s, t] = self.reference.each_mut().map(|values| &mut values[..]);
+        let [u, v, w] = velocity.map(|values| values.chunks_exact(n_points));
+        for ((u, v), w) in u.zip(v).zip(w) {
+            let mut n_holes = 0_u32;
+            let mut n_open = 0_u32;
+            for ((u, v), (w, r)) in u.iter().zip(v).zip(w.iter().zip(r.iter())) {
+                n_holes += u32::from(!(u + v + w).is_finite());
+                n_open += u32::from(r.is_nan());
+            }
+            self.n_holes += u64::from(n_holes);
+            if n_open == 0 {
+                continue;
+            }
+            for i in 0..r.len() {
+                if r[i].is_nan() && (u[i] + v[i] + w[i]).is_finite() {
+                    (r[i], s[i], t[i]) = (u[i], v[i], w[i]);
+                }
             }
         }
-        match self.last {
-            Some(before) if time <= before => Err(PhaseError::TimeRunsBack { time, before }),
-            _ => Ok(helix),
-        }
+    }
+
+    /// Instants from the first to the last of `span` (s) were taken in.
+    fn passed(&mut self, span: [f64; 2]) {
+        self.first.get_or_insert(span[0]);
+        self.last = Some(span[1]);
+        self.latest = span[1];
     }
 
     /// First and last instant (s); zeros before there is one.
@@ -226,7 +218,9 @@ impl PhaseAverager {
 
     /// Mean and second moments of all instants so far.
     pub fn all(&self) -> Moments {
-        self.all.moments(&self.reference)
+        let mut moments = Moments::default();
+        self.all.moments(&self.reference, &mut moments);
+        moments
     }
 
     /// Mean and second moments of those in bin number `index` so far.
@@ -234,7 +228,17 @@ impl PhaseAverager {
     /// # Panics
     /// Where there is no such bin.
     pub fn bin(&self, index: usize) -> Moments {
-        self.each[index].moments(&self.reference)
+        let mut moments = Moments::default();
+        self.read_bin(index, &mut moments);
+        moments
+    }
+
+    /// On return `moments` are those of bin number `index` so far.
+    ///
+    /// # Panics
+    /// Where there is no such bin.
+    pub fn read_bin(&self, index: usize, moments: &mut Moments) {
+        self.each[index].moments(&self.reference, moments);
     }
 
     /// The averages without those of the bins, which [`PhaseAverager::bin`] gives one by one.

@@ -19,6 +19,19 @@ pub struct Decomposition {
     pub fewest: Vec<u32>,
 }
 
+impl Decomposition {
+    /// Puts `other`, whose points come next, behind this.
+    pub fn append(&mut self, other: &Self) {
+        let own = self.mean.iter_mut().chain(&mut self.total).chain(&mut self.periodic);
+        let others = other.mean.iter().chain(&other.total).chain(&other.periodic);
+        for (own, other) in own.chain(&mut self.random).zip(others.chain(&other.random)) {
+            own.extend_from_slice(other);
+        }
+        self.n_bins.extend_from_slice(&other.n_bins);
+        self.fewest.extend_from_slice(&other.fewest);
+    }
+}
+
 /// Takes the bins of averages by phase one by one.
 #[derive(Clone, Debug)]
 pub struct Decomposer {
@@ -58,21 +71,33 @@ impl Decomposer {
     /// Where it has other points.
     pub fn add(&mut self, bin: &Moments) {
         assert_eq!(bin.n_samples.len(), self.n_bins.len(), "bins of one grid");
-        for (i, n) in bin.n_samples.iter().copied().enumerate().filter(|(_, n)| *n > 1) {
-            self.n_bins[i] += 1;
-            self.fewest[i] = self.fewest[i].min(n);
-            let away: [f64; 3] =
-                std::array::from_fn(|a| f64::from(bin.mean[a][i]) - self.about[a][i]);
-            for (sum, away) in self.mean.iter_mut().zip(away) {
-                sum[i] += away;
+        for ((n, n_bins), fewest) in
+            bin.n_samples.iter().zip(&mut self.n_bins).zip(&mut self.fewest)
+        {
+            *n_bins += u32::from(*n > 1);
+            *fewest = if *n > 1 { (*fewest).min(*n) } else { *fewest };
+        }
+        for ((sum, about), mean) in self.mean.iter_mut().zip(&self.about).zip(&bin.mean) {
+            let each = sum.iter_mut().zip(mean.iter().zip(about)).zip(&bin.n_samples);
+            for ((sum, (mean, about)), n) in each {
+                *sum += if *n > 1 { f64::from(*mean) - about } else { 0.0 };
             }
-            let n = f64::from(n);
-            for (place, [a, b]) in STRESSES.into_iter().enumerate() {
+        }
+        for (place, components) in STRESSES.into_iter().enumerate() {
+            let [a, b] = components.map(|c| bin.mean[c].iter().zip(&self.about[c]));
+            let sums = self.products[place].iter_mut().zip(&mut self.random[place]);
+            let sums = sums.zip(&mut self.noise[place]);
+            let samples = bin.stress[place].iter().zip(&bin.n_samples);
+            for (((sums, a), b), (stress, n)) in sums.zip(a).zip(b).zip(samples) {
+                let ((product, random), noise) = sums;
+                let is_in = *n > 1;
+                let n = f64::from(*n);
                 // Without bias: of n samples about their own mean, and less what that mean scatters by.
-                let random = f64::from(bin.stress[place][i]) * n / (n - 1.0);
-                self.products[place][i] += away[a] * away[b];
-                self.random[place][i] += random;
-                self.noise[place][i] += random / n;
+                let own = f64::from(*stress) * n / (n - 1.0);
+                let away = [a, b].map(|(mean, about)| f64::from(*mean) - about);
+                *product += if is_in { away[0] * away[1] } else { 0.0 };
+                *random += if is_in { own } else { 0.0 };
+                *noise += if is_in { own / n } else { 0.0 };
             }
         }
     }

@@ -117,6 +117,71 @@ proptest! {
     }
 }
 
+proptest! {
+    /// However instants are taken in: one by one, in batches, on all points at once or on some at a time.
+    #[test]
+    fn batches_and_parts_of_the_points_give_the_same_bits(
+        seed: u64, n_points in 1_usize..9, n_instants in 2_usize..60, cut in 0.0..1.0_f64,
+        part in 1_usize..5,
+    ) {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let bins = Bins::of_helix(3, 2.5, 2, Sense::Clockwise, Bins::WIDTH * 4.0).unwrap();
+        let mut instants = Vec::new();
+        let mut velocity = [const { Vec::new() }; 3];
+        for step in 0..n_instants {
+            let [rotor, helix] = [0.7 * step as f64, -0.28 * step as f64];
+            instants.push(PhaseInstant { time: step as f64, rotor, helix: Some(helix) });
+            for values in &mut velocity {
+                values.extend((0..n_points).map(|_| 8.0 + normals(&mut random)[0] as f32));
+                if even(&mut random) < 0.2 {
+                    let hole = values.len() - 1 - random.next_u32() as usize % n_points;
+                    values[hole] = f32::NAN;
+                }
+            }
+        }
+        let rows = |points: std::ops::Range<usize>, instants: std::ops::Range<usize>| {
+            velocity.each_ref().map(|values| -> Vec<f32> {
+                let row = |step: usize| &values[step * n_points..][points.clone()];
+                instants.clone().flat_map(row).copied().collect()
+            })
+        };
+        let mut one_by_one = PhaseAverager::new(line(n_points), bins);
+        for (step, instant) in instants.iter().enumerate() {
+            let row = rows(0..n_points, step..step + 1);
+            let row = row.each_ref().map(Vec::as_slice);
+            one_by_one.add(instant.time, instant.rotor, instant.helix, row).unwrap();
+        }
+        let cut = 1 + ((n_instants - 2) as f64 * cut) as usize;
+        let spans = [0..cut, cut..n_instants];
+        let batches = spans.clone().map(|span| PhaseBatch::new(bins, &instants[span]).unwrap());
+        let mut some = PhaseAverager::new(line(1), bins);
+        let expected = one_by_one.averages();
+        let mut n_holes = 0;
+        for first in (0..n_points).step_by(part) {
+            let points = first..(first + part).min(n_points);
+            some.begin_anew(line(points.len()));
+            for (span, batch) in spans.iter().zip(&batches) {
+                let rows = rows(points.clone(), span.clone());
+                some.add_batch(batch, rows.each_ref().map(Vec::as_slice)).unwrap();
+            }
+            n_holes += some.n_holes();
+            prop_assert_eq!(some.phase_bins(), one_by_one.phase_bins());
+            prop_assert_eq!(some.span(), one_by_one.span());
+            let bits = |values: &[f32]| -> Vec<u32> { values.iter().map(|v| v.to_bits()).collect() };
+            let pairs = expected.each.iter().enumerate().map(|(bin, own)| (some.bin(bin), own));
+            for (found, expected) in pairs.chain([(some.all(), &expected.all)]) {
+                prop_assert_eq!(&found.n_samples, &expected.n_samples[points.clone()]);
+                let found = found.mean.iter().chain(&found.stress);
+                for (found, expected) in found.zip(expected.mean.iter().chain(&expected.stress)) {
+                    prop_assert_eq!(bits(found), bits(&expected[points.clone()]));
+                }
+            }
+        }
+        prop_assert_eq!(n_holes, one_by_one.n_holes());
+        prop_assert!(PhaseBatch::new(bins, &[instants[1], instants[0]]).is_err());
+    }
+}
+
 /// Of bins that hold equally many samples, total stress = periodic + random, whatever the samples.
 #[test]
 fn periodic_and_random_stresses_add_up_where_bins_are_equal() {

@@ -1,14 +1,22 @@
 //! `wakemix analyse`: what the records of runs tell. Arguments and help come from the list of analyses.
 
 use super::arguments::finite;
+use super::manner::says_remarks;
 use super::output::{columns, detail, print_json, print_text, tell};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use miette::Result;
+use std::io::IsTerminal;
 use std::path::PathBuf;
-use wakemix::postprocessing::analyses::{ANALYSES, Analysis, AnalysisSetting, Of, Request, Takes};
+use std::sync::atomic::{AtomicU64, Ordering};
+use wakemix::postprocessing::analyses::{
+    ANALYSES, Analysis, AnalysisSetting, Of, Request, Takes, Told, Watch,
+};
 
+/// Steps of a bar.
+const STEPS: u64 = 1000;
 /// Name of the argument with the folders.
 const FOLDERS: &str = "folders";
 
@@ -107,11 +115,37 @@ pub(crate) fn run(command: &AnalyseCommand) -> Result<()> {
     for folder in &command.request.folders {
         detail(&format!("reading: {}", folder.display()));
     }
-    let answer = (command.analysis.run)(&command.request)?;
+    let request = Request { watch: watch(), ..command.request.clone() };
+    let answer = (command.analysis.run)(&request)?;
     for remark in &answer.remarks {
         tell(remark);
     }
     if command.json { print_json(&answer.json) } else { print_text(&answer.text) }
+}
+
+/// Says what an analysis tells while it works: its cost, and how far it is; now and then a line where nobody
+/// sees a bar.
+fn watch() -> Watch {
+    let bar = if says_remarks() { ProgressBar::new(STEPS) } else { ProgressBar::hidden() };
+    if let Ok(style) = ProgressStyle::with_template("[{bar:32}] {percent} %, about {eta} left") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    let (is_drawn, told) = (std::io::stderr().is_terminal(), AtomicU64::new(0));
+    Watch::new(move |what| match what {
+        Told::Cost(text) => bar.suspend(|| tell(text)),
+        Told::Share(share) => {
+            let step = (share * STEPS as f64) as u64;
+            bar.set_position(step);
+            if step == STEPS {
+                bar.finish_and_clear();
+            }
+            let tenth = 10 * step / STEPS;
+            let is_new = told.fetch_max(tenth, Ordering::Relaxed) < tenth;
+            if is_new && !is_drawn && tenth < 10 {
+                tell(&format!("{tenth}0 %, about {} left", HumanDuration(bar.eta())));
+            }
+        }
+    })
 }
 
 #[cfg(test)]

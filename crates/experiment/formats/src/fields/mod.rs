@@ -1,9 +1,13 @@
 //! Velocity on regular grids at instants, whoever wrote it: NetCDF, VTK image data, Tecplot's text.
 //!
-//! An instant at a time is in memory. Lengths come in metres, velocities in metres a second, whatever the
-//! units of the file; what is missing in it is not a number.
+//! What is asked for is in memory: an instant, or some points at many. Lengths come in metres, velocities in
+//! metres a second, whatever the units of the file; what is missing in it is not a number.
 
+mod layout;
 mod netcdf;
+mod numbers;
+mod placed;
+mod tags;
 mod tecplot_fields;
 mod units;
 mod vti;
@@ -17,6 +21,7 @@ use netcdf::NetCdfFields;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tecplot_fields::TecplotFields;
+use vti::VtiFields;
 
 const WHAT: &str = "velocity on a grid";
 
@@ -60,7 +65,7 @@ pub enum Zeros {
 enum Kind {
     NetCdf(NetCdfFields),
     /// A file for each instant.
-    Vti(Vec<PathBuf>),
+    Vti(VtiFields),
     Tecplot(TecplotFields),
 }
 
@@ -76,9 +81,8 @@ impl FieldFile {
             path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase()
         };
         let (grid, times, found, kind) = if path.is_dir() || extension(path) == "vti" {
-            let files = vti::files(path)?;
-            let (grid, times) = vti::heads(&files)?;
-            (grid, times, FoundSetting::default(), Kind::Vti(files))
+            let (fields, times) = VtiFields::open(path)?;
+            (fields.grid(), times, FoundSetting::default(), Kind::Vti(fields))
         } else if ["dat", "tec", "plt"].contains(&extension(path).as_str()) {
             let fields = TecplotFields::open(path, lengths)?;
             let (grid, times) = (fields.grid(), fields.times());
@@ -158,14 +162,40 @@ impl FieldFile {
     /// # Errors
     /// [`FileError`] when it cannot be read, or is of other points than the first.
     pub fn read(&mut self, index: usize, field: &mut Field) -> Result<(), FileError> {
-        match &mut self.kind {
-            Kind::NetCdf(fields) => fields.read(&self.path, index, &mut field.velocity)?,
-            Kind::Vti(files) => vti::read(&files[index], &self.grid, &mut field.velocity)?,
-            Kind::Tecplot(fields) => fields.read(index, &mut field.velocity)?,
-        }
         (field.grid, field.time) = (self.grid, self.times[index]);
-        self.look_for_zeros(&mut field.velocity);
+        self.read_points(index..index + 1, 0..self.grid.len(), &mut field.velocity)
+    }
+
+    /// On return `velocity` is u, v, w (m/s) at `instants`, one after the other, at `points`, by their number
+    /// in the grid. Of a file in which numbers lie at known places no other is read, and nothing is allocated
+    /// where there is room; text is read whole each time.
+    ///
+    /// # Errors
+    /// As [`FieldFile::read`].
+    pub fn read_points(
+        &mut self,
+        instants: Range<usize>,
+        points: Range<usize>,
+        velocity: &mut [Vec<f32>; 3],
+    ) -> Result<(), FileError> {
+        let n_values = instants.len() * points.len();
+        velocity.iter_mut().for_each(|values| values.resize(n_values, 0.0));
+        match &mut self.kind {
+            Kind::NetCdf(fields) => fields.read(&self.path, instants, points, velocity)?,
+            Kind::Vti(fields) => fields.read(instants, points, velocity)?,
+            Kind::Tecplot(fields) => fields.read(instants, points, velocity)?,
+        }
+        self.look_for_zeros(velocity);
         Ok(())
+    }
+
+    /// Whether some points can be read without the others: not those of text.
+    pub fn reads_in_places(&self) -> bool {
+        match &self.kind {
+            Kind::NetCdf(_) => true,
+            Kind::Vti(fields) => fields.reads_in_places(),
+            Kind::Tecplot(_) => false,
+        }
     }
 
     /// Velocity u, v, w (m/s) at the `instants`, one after the other, at the points that lie `steps` steps
@@ -180,33 +210,25 @@ impl FieldFile {
     ) -> Result<[Vec<f32>; 3], FileError> {
         let n_points = self.grid.n_points;
         let slowest = (0..3).rev().find(|axis| n_points[*axis] > 1).unwrap_or(0);
-        if let Kind::NetCdf(fields) = &self.kind {
-            let mut strip = fields.read_strip(&self.path, instants, (slowest, steps))?;
-            self.look_for_zeros(&mut strip);
-            return Ok(strip);
-        }
         let row = self.grid.len() / n_points[slowest];
-        let points = steps.start * row..steps.end * row;
         let mut strip = [const { Vec::new() }; 3];
-        let mut field = self.empty();
-        for index in instants {
-            self.read(index, &mut field)?;
-            for (strip, values) in strip.iter_mut().zip(&field.velocity) {
-                strip.extend_from_slice(&values[points.clone()]);
-            }
-        }
+        self.read_points(instants, steps.start * row..steps.end * row, &mut strip)?;
         Ok(strip)
     }
 
     /// Counts velocities that are zero, and takes them off where they are holes.
     fn look_for_zeros(&mut self, velocity: &mut [Vec<f32>; 3]) {
         let [u, v, w] = velocity;
+        let is_zero = |u: f32, v: f32, w: f32| (u == 0.0) & (v == 0.0) & (w == 0.0);
+        let each = u.iter().zip(v.iter()).zip(w.iter());
+        let n_zeros: u64 = each.map(|((u, v), w)| u64::from(is_zero(*u, *v, *w))).sum();
+        self.n_zeros += n_zeros;
+        if n_zeros == 0 || self.zeros == Zeros::Air {
+            return;
+        }
         for ((u, v), w) in u.iter_mut().zip(v).zip(w) {
-            if [*u, *v, *w] == [0.0; 3] {
-                self.n_zeros += 1;
-                if self.zeros == Zeros::Holes {
-                    [*u, *v, *w] = [f32::NAN; 3];
-                }
+            if is_zero(*u, *v, *w) {
+                [*u, *v, *w] = [f32::NAN; 3];
             }
         }
     }

@@ -1,13 +1,18 @@
 //! Fields in NetCDF: those of this program, and others with coordinates x, y, z and components u, v, w.
 
+use super::layout::Layout;
+use super::numbers::Coding;
+use super::placed::PlacedReader;
 use super::{FoundSetting, Lengths, WHAT, length_in, speed_in, time_in};
-use crate::{FileError, atomic, netcdf};
+use crate::{FileError, netcdf};
 use basis::records::Grid;
-use netcdf_reader::{NcFile, NcSliceInfo, NcSliceInfoElem, NcType, NcVariable};
+use netcdf_reader::{NcFile, NcVariable};
+use std::io::{self, ErrorKind};
 use std::ops::Range;
 use std::path::Path;
 
 const FIX: &str = "give coordinates x, y, z and time, and velocities u, v, w over time, z, y, x; an axis with one point may be left out";
+const RESTORE: &str = "copy the file again if it was cut short; NetCDF of the classic kinds is read (`nccopy -k 64-bit-offset` makes it of NetCDF-4)";
 /// Names of the components, one set of them.
 const COMPONENTS: [[&str; 3]; 4] = [
     ["u", "v", "w"],
@@ -18,16 +23,16 @@ const COMPONENTS: [[&str; 3]; 4] = [
 /// Axes in the order in which velocities stand over them.
 const AXES: [&str; 3] = ["z", "y", "x"];
 
+/// Bytes that are asked for ahead of need.
+const AHEAD: usize = 8 << 20;
+
 /// The components in a file.
 pub(super) struct NetCdfFields {
-    file: NcFile,
-    names: [String; 3],
-    /// Metres a second of one, of each component.
-    scales: [f64; 3],
-    /// Whether the numbers of all components are in single precision, as they stand.
-    is_plain: bool,
-    grid: Grid,
-    n_points: usize,
+    reader: PlacedReader,
+    layouts: [Layout; 3],
+    n_instants: usize,
+    /// Points that were asked for, up to which chunk.
+    advised: (Range<usize>, usize),
 }
 
 /// The fields, with their points, instants and what the file tells of them.
@@ -36,126 +41,128 @@ type Opened = (NetCdfFields, Grid, Vec<Option<f64>>, FoundSetting);
 impl NetCdfFields {
     /// The fields at `path`, with their points, instants and what the file tells of them.
     pub(super) fn open(path: &Path, lengths: Lengths) -> Result<Opened, FileError> {
-        let unreadable = |error| FileError::system("read", WHAT, path, error);
-        let length = atomic::open(path).and_then(|file| file.metadata()).map_err(unreadable)?.len();
-        let most = usize::try_from(length).unwrap_or(usize::MAX);
-        let opened = NcFile::open(path).map_err(|error| error.to_string());
-        let read = opened.and_then(|file| Self::decode(file, lengths, most));
-        read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))
+        let reader = PlacedReader::open(path);
+        let reader = reader.map_err(|error| FileError::system("read", WHAT, path, error))?;
+        let refused = |problem: String, fix| FileError::content(WHAT, path, problem, fix);
+        let file = NcFile::open(path).map_err(|error| refused(error.to_string(), RESTORE))?;
+        Self::decode(&file, reader, lengths).map_err(|problem| refused(problem, FIX))
     }
 
-    fn decode(file: NcFile, lengths: Lengths, most: usize) -> Result<Opened, String> {
-        let names = components(&file)?;
-        let grid = grid(&file, lengths, most)?;
+    fn decode(file: &NcFile, reader: PlacedReader, lengths: Lengths) -> Result<Opened, String> {
+        let most = usize::try_from(reader.length()).unwrap_or(usize::MAX);
+        let names = components(file)?;
+        let grid = grid(file, lengths, most)?;
         let n_points = grid.len();
-        let mut scales = [1.0; 3];
+        let mut layouts = Vec::new();
         let mut over_time = Vec::new();
         let mut told = Vec::new();
-        for (name, scale) in names.iter().zip(&mut scales) {
+        for name in &names {
             let variable = file.variable(name).map_err(|error| error.to_string())?;
-            over_time.push(is_over_time(variable, &grid)?);
+            let has_time = is_over_time(variable, &grid)?;
+            over_time.push(has_time);
             told.push(unit(variable).is_some());
-            *scale = match unit(variable) {
+            let scale = match unit(variable) {
                 Some(unit) => speed_in(&unit).ok_or_else(|| {
                     format!("`{name}` is in {unit}; speeds in m/s or mm/s are read")
                 })?,
                 None => 1.0,
             };
+            let coding = Coding::of(variable, scale);
+            let coding = coding.ok_or_else(|| format!("`{name}` does not hold numbers"))?;
+            layouts.push(Layout::of(file, variable, (n_points, has_time), coding)?);
         }
-        let is_plain =
-            scales == [1.0; 3] && names.iter().all(|name| file.variable(name).is_ok_and(is_plain));
         if over_time != [over_time[0]; 3] {
             return Err(format!("of {} some stand over time, some do not", names.join(", ")));
         }
         if told != [told[0]; 3] {
             return Err(format!("of {} some tell a unit, some do not", names.join(", ")));
         }
-        let has_time = over_time[0];
-        let times = times(&file, has_time, most)?;
-        let n_values = times.len().checked_mul(n_points);
-        if n_values.is_none_or(|n| n > most) {
-            return Err("it holds fewer values than it says".to_owned());
+        let times = times(file, over_time[0], most)?;
+        let n_instants = times.len();
+        for (layout, name) in layouts.iter().zip(&names) {
+            let end = layout.end(n_points, n_instants);
+            if n_instants > 0 && end.is_none_or(|end| end > reader.length()) {
+                return Err(format!(
+                    "it holds fewer values than it says: `{name}` at {n_instants} instants does not end within its {} bytes; it was cut short",
+                    reader.length()
+                ));
+            }
         }
-        let found = found(&file);
-        let fields = Self { file, names, scales, is_plain, grid, n_points };
-        Ok((fields, grid, times, found))
+        let found = found(file);
+        let layouts = layouts.try_into().map_err(|_| "it lacks a component".to_owned())?;
+        let advised = (0..0, 0);
+        Ok((Self { reader, layouts, n_instants, advised }, grid, times, found))
     }
 
-    /// On return `velocity` is that of instant number `index`.
+    /// On return `velocity` is that at `instants`, one after the other, at `points`.
     pub(super) fn read(
-        &self,
-        path: &Path,
-        index: usize,
-        velocity: &mut [Vec<f32>; 3],
-    ) -> Result<(), FileError> {
-        let place = Place { instants: index..index + 1, strip: None, n: self.n_points };
-        self.read_at(path, &place, velocity)
-    }
-
-    /// Velocity at the `instants`, one after the other, at the steps of `strip` along its axis.
-    pub(super) fn read_strip(
-        &self,
+        &mut self,
         path: &Path,
         instants: Range<usize>,
-        strip: (usize, Range<usize>),
-    ) -> Result<[Vec<f32>; 3], FileError> {
-        let row = self.n_points / self.grid.n_points[strip.0];
-        let n = instants.len() * row * strip.1.len();
-        let mut velocity = [const { Vec::new() }; 3];
-        self.read_at(path, &Place { instants, strip: Some(strip), n }, &mut velocity)?;
-        Ok(velocity)
-    }
-
-    fn read_at(
-        &self,
-        path: &Path,
-        place: &Place,
+        points: Range<usize>,
         velocity: &mut [Vec<f32>; 3],
     ) -> Result<(), FileError> {
-        for ((name, scale), values) in self.names.iter().zip(self.scales).zip(velocity) {
-            let read = self.values(name, scale, place);
-            *values = read.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
-            if values.len() != place.n {
-                let problem =
-                    format!("`{name}` has {} values where {} are expected", values.len(), place.n);
-                return Err(FileError::content(WHAT, path, problem, FIX));
+        let n_points = points.len();
+        for instant in instants.clone() {
+            let start = (instant - instants.start) * n_points;
+            for (component, values) in velocity.iter_mut().enumerate() {
+                self.advise(3 * instant + component, &points);
+                let own = &mut values[start..start + n_points];
+                let read = self.read_component(component, instant, points.clone(), own);
+                read.map_err(|error| refusal(path, error))?;
             }
         }
         Ok(())
     }
 
-    fn values(&self, name: &str, scale: f64, place: &Place) -> Result<Vec<f32>, String> {
-        let variable = self.file.variable(name).map_err(|error| error.to_string())?;
-        let slice = |range: &Range<usize>| NcSliceInfoElem::Slice {
-            start: range.start as u64,
-            end: range.end as u64,
-            step: 1,
-        };
-        let along = |dimension: &str| match &place.strip {
-            _ if dimension == "time" => slice(&place.instants),
-            Some((axis, steps)) if dimension == ["x", "y", "z"][*axis] => slice(steps),
-            _ => NcSliceInfoElem::Slice { start: 0, end: u64::MAX, step: 1 },
-        };
-        let selections = variable.dimensions.iter().map(|one| along(&one.name)).collect();
-        let slice = NcSliceInfo { selections };
-        if self.is_plain {
-            let read = self.file.read_variable_slice::<f32>(name, &slice);
-            return Ok(read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0);
+    /// Asks for `points` of the chunks after number `chunk`, counted over instants and components, as far
+    /// ahead as is useful and was not asked for yet.
+    fn advise(&mut self, chunk: usize, points: &Range<usize>) {
+        let of_chunk = points.len().max(1) * self.layouts[0].coding.n_bytes();
+        let end = (chunk + 1 + AHEAD.div_ceil(of_chunk)).min(3 * self.n_instants);
+        let (asked, until) = &self.advised;
+        let is_under_way = asked == points && (chunk + 1..=end).contains(until);
+        let start = if is_under_way { *until } else { chunk + 1 };
+        for chunk in start..end {
+            let (instant, layout) = (chunk / 3, &self.layouts[chunk % 3]);
+            if let Some((at, n_bytes, _)) = layout.place(instant, points) {
+                self.reader.advise(at, n_bytes);
+            }
         }
-        // Fill values and packed numbers as the conventions have them.
-        let read = self.file.read_variable_slice_unpacked_masked(name, &slice);
-        let values = read.map_err(|error| error.to_string())?.into_raw_vec_and_offset().0;
-        Ok(values.into_iter().map(|value| (scale * value) as f32).collect())
+        self.advised = (points.clone(), end);
+    }
+
+    fn read_component(
+        &mut self,
+        component: usize,
+        instant: usize,
+        points: Range<usize>,
+        mut values: &mut [f32],
+    ) -> io::Result<()> {
+        let layout = &self.layouts[component];
+        let mut rest = points;
+        while !rest.is_empty() {
+            let place = layout.place(instant, &rest);
+            let (at, n_bytes, after) = place.ok_or(ErrorKind::UnexpectedEof)?;
+            self.reader.read(at, n_bytes, |bytes| {
+                let n = bytes.len() / layout.coding.n_bytes();
+                let (own, others) = std::mem::take(&mut values).split_at_mut(n);
+                layout.coding.decode(bytes, own);
+                values = others;
+            })?;
+            rest = after;
+        }
+        Ok(())
     }
 }
 
-/// What is read of a variable.
-struct Place {
-    instants: Range<usize>,
-    /// An axis, and steps along it; the whole grid where there is none.
-    strip: Option<(usize, Range<usize>)>,
-    /// Values (–).
-    n: usize,
+/// That the file at `path` could not be read.
+pub(super) fn refusal(path: &Path, error: io::Error) -> FileError {
+    if error.kind() == ErrorKind::UnexpectedEof {
+        let fix = "copy the file again: it became shorter while it was read";
+        return FileError::content(WHAT, path, "its numbers are cut short", fix);
+    }
+    FileError::system("read", WHAT, path, error)
 }
 
 /// Names of the three components in `file`.
@@ -167,23 +174,6 @@ fn components(file: &NcFile) -> Result<[String; 3], String> {
         Some(name) => Err(format!("it lacks `{name}`")),
         None => Ok(set.map(str::to_owned)),
     }
-}
-
-/// Whether the numbers of `variable` are in single precision and mean what they say.
-fn is_plain(variable: &NcVariable) -> bool {
-    const CHANGES: [&str; 8] = [
-        "_FillValue",
-        "missing_value",
-        "valid_range",
-        "valid_min",
-        "valid_max",
-        "scale_factor",
-        "add_offset",
-        "_Unsigned",
-    ];
-    let changes = |name: &str| CHANGES.contains(&name);
-    *variable.dtype() == NcType::Float
-        && !variable.attributes.iter().any(|attribute| changes(&attribute.name))
 }
 
 /// The unit of `variable`, where it tells one.

@@ -6,6 +6,7 @@ use crate::netcdf::even;
 use crate::tecplot::{Item, TecplotReader, Zone};
 use crate::tracks::{Columns, Role};
 use basis::records::Grid;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Zones of one grid. They are read one after the other; a step back begins anew.
@@ -59,11 +60,27 @@ impl TecplotFields {
         self.times.clone()
     }
 
-    /// On return `velocity` is that of zone number `index`.
+    /// On return `velocity` is that of the zones `instants`, one after the other, at `points`.
     pub(super) fn read(
         &mut self,
-        index: usize,
+        instants: Range<usize>,
+        points: Range<usize>,
         velocity: &mut [Vec<f32>; 3],
+    ) -> Result<(), FileError> {
+        for instant in instants.clone() {
+            let start = (instant - instants.start) * points.len();
+            let own = velocity.each_mut().map(|values| &mut values[start..start + points.len()]);
+            self.read_zone(instant, points.clone(), own)?;
+        }
+        Ok(())
+    }
+
+    /// On return `velocity` is that of zone number `index` at `points`.
+    fn read_zone(
+        &mut self,
+        index: usize,
+        points: Range<usize>,
+        velocity: [&mut [f32]; 3],
     ) -> Result<(), FileError> {
         if self.reader.is_none() || self.n_read > index {
             let mut reader = TecplotReader::open(&self.path, WHAT)?;
@@ -83,10 +100,10 @@ impl TecplotFields {
             }
             self.n_read += 1;
             if is_wanted {
-                for (own, column) in velocity.iter_mut().zip(columns.velocity()) {
-                    own.clear();
-                    let values = values[column.place].iter();
-                    own.extend(values.map(|value| (column.scale * value) as f32));
+                for (own, column) in velocity.into_iter().zip(columns.velocity()) {
+                    for (own, value) in own.iter_mut().zip(&values[column.place][points.clone()]) {
+                        *own = (column.scale * value) as f32;
+                    }
                 }
                 return Ok(());
             }

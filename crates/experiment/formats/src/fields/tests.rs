@@ -161,3 +161,74 @@ fn what_is_wrong_is_named() {
     let error = FieldFile::open(&empty, Lengths::Metres).err().unwrap().to_string();
     assert!(error.contains("it holds no .vti"), "{error}");
 }
+
+/// Numbers of other types, packed, filled, masked, in mm/s; some points of them, and at once.
+#[test]
+fn numbers_of_any_type_are_read_in_places_as_the_conventions_have_them() {
+    use netcdf_writer::{NcAttrValue, NcFileBuilder, NcWriteOptions};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("packed.nc");
+    let mut file = NcFileBuilder::new();
+    let time = file.add_unlimited_dimension("time").unwrap();
+    let z = file.add_dimension("z", 2).unwrap();
+    let x = file.add_dimension("x", 3).unwrap();
+    for (name, over, values) in
+        [("time", time, &[0.5, 1.5][..]), ("z", z, &[0.0, 1.0]), ("x", x, &[0.0, 1.0, 2.0])]
+    {
+        let variable = file.add_variable::<f64>(name, &[over]).unwrap();
+        file.write_variable(variable, values).unwrap();
+    }
+    let over = [time, z, x];
+    let u = file.add_variable::<i16>("u", &over).unwrap();
+    let stored: Vec<i16> = (0..12).map(|i| if i == 4 { -99 } else { 10 * i }).collect();
+    file.write_variable(u, &stored).unwrap();
+    let number = |value: f64| NcAttrValue::Doubles(vec![value]);
+    file.add_variable_attribute(u, "scale_factor", number(0.5)).unwrap();
+    file.add_variable_attribute(u, "add_offset", number(1.0)).unwrap();
+    file.add_variable_attribute(u, "missing_value", number(-99.0)).unwrap();
+    let v = file.add_variable::<f32>("v", &over).unwrap();
+    file.write_variable(v, &(0..12).map(|i| i as f32).collect::<Vec<f32>>()).unwrap();
+    file.add_variable_attribute(v, "valid_max", NcAttrValue::Floats(vec![10.0])).unwrap();
+    let w = file.add_variable::<f64>("w", &over).unwrap();
+    file.write_variable(w, &(0..12).map(|i| 0.25 * f64::from(i)).collect::<Vec<f64>>()).unwrap();
+    for variable in [u, v, w] {
+        let unit = NcAttrValue::Chars("mm/s".to_owned());
+        file.add_variable_attribute(variable, "units", unit).unwrap();
+    }
+    fs::write(&path, file.to_vec(NcWriteOptions::classic()).unwrap().1).unwrap();
+    let library = netcdf_reader::NcFile::open(&path).unwrap();
+    let expected = ["u", "v", "w"].map(|name| {
+        let values = library.read_variable_unpacked_masked(name).unwrap();
+        values.into_iter().map(|value| (1e-3 * value) as f32).collect::<Vec<f32>>()
+    });
+    let mut file = FieldFile::open(&path, Lengths::Metres).unwrap();
+    let mut found = [const { Vec::new() }; 3];
+    file.read_points(0..2, 2..5, &mut found).unwrap();
+    for (found, expected) in found.iter().zip(&expected) {
+        let own = [&expected[2..5], &expected[8..11]].concat();
+        let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<u32>>();
+        assert_eq!(bits(found), bits(&own));
+    }
+    assert!(found[0][2].is_nan() && found[1][5] == 0.01_f32 && found[2][0] == 0.0005);
+}
+
+#[test]
+fn a_file_that_was_cut_short_is_refused_when_it_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("streamwise.nc");
+    let mut writer = InstantWriter::create(&path, &PlaneSetting::example(), &plane(1.0)).unwrap();
+    (1..4).for_each(|time| writer.write(&plane(f64::from(time))).unwrap());
+    writer.finish().unwrap();
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    let error = FieldFile::open(&path, Lengths::Metres).err().unwrap().to_string();
+    assert!(error.contains("the file has only") && error.contains("streamwise.nc"), "{error}");
+    // One that grows shorter while it is read.
+    fs::write(&path, &bytes).unwrap();
+    let mut file = FieldFile::open(&path, Lengths::Metres).unwrap();
+    fs::File::options().write(true).open(&path).unwrap().set_len(bytes.len() as u64 - 8).unwrap();
+    let mut velocity = [const { Vec::new() }; 3];
+    file.read_points(0..3, 0..4, &mut velocity).unwrap();
+    let error = file.read_points(2..3, 4..6, &mut velocity).unwrap_err().to_string();
+    assert!(error.contains("cut short") && error.contains("streamwise.nc"), "{error}");
+}

@@ -1,10 +1,15 @@
 //! Fields as VTK image data (`.vti`), a file for each instant: raw appended numbers or text, not compressed.
 
 use super::WHAT;
+use super::netcdf::refusal;
+use super::numbers::{Coding, Kind};
+use super::placed::PlacedReader;
+use super::tags::{attribute, content, numbers, tag};
 use crate::{FileError, atomic};
 use basis::records::Grid;
 use std::fs;
 use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 const FIX: &str = "write XML image data (.vti) with a vector `velocity`, appended as raw numbers or as text, without compression";
@@ -14,8 +19,133 @@ const APPENDED: &[u8] = b"<AppendedData";
 /// Bytes of a file in which its head is looked for.
 const HEAD_BYTES: u64 = 1 << 16;
 
+/// Files of one grid, an instant each.
+pub(super) struct VtiFields {
+    files: Vec<PathBuf>,
+    grid: Grid,
+    /// Where the numbers of each lie; none of text, and of heads that are longer than usual.
+    places: Vec<Option<Place>>,
+    reader: Option<PlacedReader>,
+    /// Room for a piece of numbers, components of a point together.
+    mixed: Vec<f32>,
+}
+
+/// Where raw numbers lie.
+struct Place {
+    /// The first (byte).
+    at: u64,
+    coding: Coding,
+}
+
+impl VtiFields {
+    /// The file at `path`, or those in the folder that it is, which must have the same points; and their
+    /// instants: all must tell their time, or none.
+    pub(super) fn open(path: &Path) -> Result<(Self, Vec<Option<f64>>), FileError> {
+        let files = files(path)?;
+        let mut first: Option<Grid> = None;
+        let (mut times, mut places) = (Vec::new(), Vec::new());
+        for path in &files {
+            let (own, time, place) = head(path)?;
+            if own != *first.get_or_insert(own) {
+                return Err(other_points(path));
+            }
+            times.push(time);
+            places.push(place);
+            if times[0].is_some() != time.is_some() {
+                let problem = "of the files some tell their instant (`TimeValue`), some do not";
+                return Err(FileError::content(WHAT, path, problem, "write it into all of them"));
+            }
+        }
+        let grid = first.unwrap_or(Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [0; 3] });
+        Ok((Self { files, grid, places, reader: None, mixed: Vec::new() }, times))
+    }
+
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Whether numbers are read where they lie.
+    pub(super) fn reads_in_places(&self) -> bool {
+        self.places.iter().all(Option::is_some)
+    }
+
+    /// On return `velocity` is that at `instants`, one after the other, at `points`.
+    pub(super) fn read(
+        &mut self,
+        instants: Range<usize>,
+        points: Range<usize>,
+        velocity: &mut [Vec<f32>; 3],
+    ) -> Result<(), FileError> {
+        for instant in instants.clone() {
+            let start = (instant - instants.start) * points.len();
+            let own = velocity.each_mut().map(|values| &mut values[start..start + points.len()]);
+            match self.places[instant] {
+                Some(_) => self.read_raw(instant, &points, own)?,
+                None => self.read_whole(instant, &points, own)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The raw numbers of file number `index` at `points`, whose head was read.
+    fn read_raw(
+        &mut self,
+        index: usize,
+        points: &Range<usize>,
+        velocity: [&mut [f32]; 3],
+    ) -> Result<(), FileError> {
+        let (path, mixed) = (&self.files[index], &mut self.mixed);
+        let Some(Place { at, coding }) = &self.places[index] else { return Ok(()) };
+        let of_point = 3 * coding.n_bytes();
+        let mut n_read = 0;
+        let mut take = |bytes: &[u8]| {
+            let n_points = bytes.len() / of_point;
+            mixed.resize(3 * n_points, 0.0);
+            coding.decode(bytes, mixed);
+            for (i, own) in mixed.as_chunks::<3>().0.iter().enumerate() {
+                (0..3).for_each(|component| velocity[component][n_read + i] = own[component]);
+            }
+            n_read += n_points;
+        };
+        let opened = match &mut self.reader {
+            Some(reader) => reader.turn_to(path).map(|()| reader),
+            none => PlacedReader::open(path).map(|reader| none.insert(reader)),
+        };
+        let offset = at + (points.start * of_point) as u64;
+        let read =
+            opened.and_then(|reader| reader.read(offset, points.len() * of_point, &mut take));
+        read.map_err(|error| refusal(path, error))
+    }
+
+    /// File number `index`, whatever it holds, at `points`.
+    fn read_whole(
+        &self,
+        index: usize,
+        points: &Range<usize>,
+        velocity: [&mut [f32]; 3],
+    ) -> Result<(), FileError> {
+        let path = &self.files[index];
+        let bytes = atomic::read_bytes(path, WHAT)?;
+        let image = decode(&bytes);
+        let image = image.map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
+        if image.grid != self.grid {
+            return Err(other_points(path));
+        }
+        for (component, values) in velocity.into_iter().enumerate() {
+            let own = image.velocity[3 * points.start..].iter().skip(component).step_by(3);
+            values.iter_mut().zip(own).for_each(|(value, own)| *value = *own);
+        }
+        Ok(())
+    }
+}
+
+fn other_points(path: &Path) -> FileError {
+    let problem = "its points are not those of the first file";
+    FileError::content(WHAT, path, problem, "give files of one grid")
+}
+
 /// The files at `path`: itself, or the `.vti` in the folder that it is, by name.
-pub(super) fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
@@ -36,37 +166,39 @@ pub(super) fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
-/// Points and instants of `files`, which must have the same points, and all tell their time or none.
-pub(super) fn heads(files: &[PathBuf]) -> Result<(Grid, Vec<Option<f64>>), FileError> {
-    let mut first: Option<Grid> = None;
-    let mut times = Vec::with_capacity(files.len());
-    for path in files {
-        let (own, time) = head(path)?;
-        if own != *first.get_or_insert(own) {
-            let problem = "its points are not those of the first file";
-            return Err(FileError::content(WHAT, path, problem, "give files of one grid"));
-        }
-        times.push(time);
-        if times[0].is_some() != time.is_some() {
-            let problem = "of the files some tell their instant (`TimeValue`), some do not";
-            return Err(FileError::content(WHAT, path, problem, "write it into all of them"));
-        }
-    }
-    Ok((first.unwrap_or(Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [0; 3] }), times))
-}
-
-/// Points and instant of the file at `path`, from its beginning alone.
-fn head(path: &Path) -> Result<(Grid, Option<f64>), FileError> {
+/// Points and instant of the file at `path`, and where its numbers lie, from its beginning alone.
+fn head(path: &Path) -> Result<(Grid, Option<f64>, Option<Place>), FileError> {
     let mut bytes = Vec::new();
-    let read = atomic::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut bytes));
-    read.map_err(|error| FileError::system("read", WHAT, path, error))?;
+    let read = atomic::open(path).and_then(|mut file| {
+        (&mut file).take(HEAD_BYTES).read_to_end(&mut bytes)?;
+        Ok(file.metadata()?.len())
+    });
+    let length = read.map_err(|error| FileError::system("read", WHAT, path, error))?;
     let text = text_before_data(&bytes);
     // Text that is cut in the middle of a letter is sound up to there.
     let text = match std::str::from_utf8(text) {
         Ok(text) => text,
         Err(error) => std::str::from_utf8(&text[..error.valid_up_to()]).unwrap_or_default(),
     };
-    head_of(text).map_err(|problem| FileError::content(WHAT, path, problem, FIX))
+    let (grid, time) =
+        head_of(text).map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
+    // What is wrong with numbers is told when they are read.
+    Ok((grid, time, place_of(text, &bytes[text.len()..], length)))
+}
+
+/// Where the raw numbers of a file of `length` bytes lie that begins with `head` and goes on with `rest`;
+/// none where that does not tell, or the file is shorter.
+fn place_of(head: &str, rest: &[u8], length: u64) -> Option<Place> {
+    let array = velocity_array(head).ok()?;
+    if attribute(array, "format") != Some("appended") {
+        return None;
+    }
+    let n_values = n_values_of(&head_of(head).ok()?.0, usize::try_from(length).ok()?).ok()?;
+    let file = tag(head, "VTKFile", |_| true)?;
+    let (from, coding) = appended_from(file, array, rest, n_values).ok()?;
+    let at = (head.len() + from) as u64;
+    let end = at.checked_add((n_values as u64).checked_mul(coding.n_bytes() as u64)?)?;
+    (end <= length).then_some(Place { at, coding })
 }
 
 /// What stands before the appended numbers.
@@ -75,36 +207,11 @@ fn text_before_data(bytes: &[u8]) -> &[u8] {
     &bytes[..end.unwrap_or(bytes.len())]
 }
 
-/// On return `velocity` is that in the file at `path`, which must have the points of `grid`.
-pub(super) fn read(
-    path: &Path,
-    grid: &Grid,
-    velocity: &mut [Vec<f32>; 3],
-) -> Result<(), FileError> {
-    let image = Image::read(path)?;
-    if image.grid != *grid {
-        let problem = "its points are not those of the first file";
-        return Err(FileError::content(WHAT, path, problem, "give files of one grid"));
-    }
-    for (component, values) in velocity.iter_mut().enumerate() {
-        values.clear();
-        values.extend(image.velocity.iter().skip(component).step_by(3));
-    }
-    Ok(())
-}
-
 /// What a file holds.
 struct Image {
     grid: Grid,
     /// Components of a point together.
     velocity: Vec<f32>,
-}
-
-impl Image {
-    fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = atomic::read_bytes(path, WHAT)?;
-        decode(&bytes).map_err(|problem| FileError::content(WHAT, path, problem, FIX))
-    }
 }
 
 /// Points and instant that the `head` of a file tells.
@@ -163,9 +270,32 @@ fn decode(bytes: &[u8]) -> Result<Image, String> {
     let head = std::str::from_utf8(head).map_err(|_| "its head is no text".to_owned())?;
     let (grid, _) = head_of(head)?;
     let file = tag(head, "VTKFile", |_| true).ok_or("it has no `VTKFile`")?;
+    let n_values = n_values_of(&grid, bytes.len())?;
+    let array = velocity_array(head)?;
+    let velocity = match attribute(array, "format") {
+        Some("ascii") => in_text(content(head, array).unwrap_or_default(), n_values)?,
+        Some("appended") => {
+            let (from, coding) = appended_from(file, array, rest, n_values)?;
+            let to = n_values.checked_mul(coding.n_bytes()).and_then(|n| n.checked_add(from));
+            let data = to.and_then(|to| rest.get(from..to)).ok_or("its numbers are cut short")?;
+            let mut values = vec![0.0; n_values];
+            coding.decode(data, &mut values);
+            values
+        }
+        other => return Err(format!("`velocity` has the format {}", other.unwrap_or("none"))),
+    };
+    Ok(Image { grid, velocity })
+}
+
+/// Numbers of the velocity on `grid` in a file of `most` bytes.
+fn n_values_of(grid: &Grid, most: usize) -> Result<usize, String> {
     let n_points = grid.n_points.into_iter().try_fold(1_usize, usize::checked_mul);
-    let n_values = n_points.and_then(|n| n.checked_mul(3)).filter(|n| *n <= bytes.len());
-    let n_values = n_values.ok_or("it has fewer numbers than its extent says")?;
+    let n_values = n_points.and_then(|n| n.checked_mul(3)).filter(|n| *n <= most);
+    n_values.ok_or_else(|| "it has fewer numbers than its extent says".to_owned())
+}
+
+/// The tag of the velocity in `head`.
+fn velocity_array(head: &str) -> Result<&str, String> {
     let array = tag(head, "DataArray", |tag| {
         attribute(tag, "Name").is_some_and(|name| name.eq_ignore_ascii_case("velocity"))
     });
@@ -173,12 +303,7 @@ fn decode(bytes: &[u8]) -> Result<Image, String> {
     if attribute(array, "NumberOfComponents") != Some("3") {
         return Err("`velocity` does not have 3 components".to_owned());
     }
-    let velocity = match attribute(array, "format") {
-        Some("ascii") => in_text(content(head, array).unwrap_or_default(), n_values)?,
-        Some("appended") => appended(file, array, rest, n_values)?,
-        other => return Err(format!("`velocity` has the format {}", other.unwrap_or("none"))),
-    };
-    Ok(Image { grid, velocity })
+    Ok(array)
 }
 
 fn in_text(text: &str, n_values: usize) -> Result<Vec<f32>, String> {
@@ -191,8 +316,13 @@ fn in_text(text: &str, n_values: usize) -> Result<Vec<f32>, String> {
     }
 }
 
-/// The numbers of `array` in `rest`, from `<AppendedData` on.
-fn appended(file: &str, array: &str, rest: &[u8], n_values: usize) -> Result<Vec<f32>, String> {
+/// Where the `n_values` numbers of `array` begin in `rest`, which begins with `<AppendedData`.
+fn appended_from(
+    file: &str,
+    array: &str,
+    rest: &[u8],
+    n_values: usize,
+) -> Result<(usize, Coding), String> {
     let start = rest.iter().position(|byte| *byte == b'>').map(|place| place + 1);
     let start = start.ok_or("it lacks the data that are appended")?;
     let opening = std::str::from_utf8(&rest[..start]).unwrap_or_default();
@@ -205,83 +335,21 @@ fn appended(file: &str, array: &str, rest: &[u8], n_values: usize) -> Result<Vec
         attribute(array, "offset").and_then(|offset| offset.parse().ok()).unwrap_or(0);
     let is_little = attribute(file, "byte_order") != Some("BigEndian");
     let count_bytes = if attribute(file, "header_type") == Some("UInt64") { 8 } else { 4 };
-    let value_bytes = match attribute(array, "type") {
-        Some("Float32") => 4,
-        Some("Float64") => 8,
+    let kind = match attribute(array, "type") {
+        Some("Float32") => Kind::F32,
+        Some("Float64") => Kind::F64,
         other => return Err(format!("`velocity` is of type {}", other.unwrap_or("none"))),
     };
+    let coding = Coding::plain(kind, is_little);
     let from = mark.checked_add(offset).and_then(|from| from.checked_add(count_bytes));
     let count = from.and_then(|from| rest.get(from - count_bytes..from));
     let count = count.ok_or("its numbers are cut short")?;
     let place = |index: usize| if is_little { index } else { count_bytes - 1 - index };
     let n_bytes =
         (0..count_bytes).fold(0_u64, |sum, i| sum | u64::from(count[place(i)]) << (8 * i));
-    if Some(n_bytes) != n_values.checked_mul(value_bytes).map(|n| n as u64) {
+    if Some(n_bytes) != n_values.checked_mul(coding.n_bytes()).map(|n| n as u64) {
         return Err(format!("`velocity` has {n_bytes} bytes, not those of {n_values} numbers"));
     }
-    let to = from.and_then(|from| from.checked_add(n_values.checked_mul(value_bytes)?));
-    let data = from.zip(to).and_then(|(from, to)| rest.get(from..to));
-    let data = data.ok_or("its numbers are cut short")?;
-    let value = |bytes: &[u8]| {
-        let mut own = [0; 8];
-        own[..value_bytes].copy_from_slice(bytes);
-        if !is_little {
-            own[..value_bytes].reverse();
-        }
-        match value_bytes {
-            4 => f32::from_le_bytes([own[0], own[1], own[2], own[3]]),
-            _ => f64::from_le_bytes(own) as f32,
-        }
-    };
-    Ok(data.chunks_exact(value_bytes).map(value).collect())
-}
-
-/// The first tag called `name` of which `is_one` holds, without its brackets.
-fn tag<'a>(text: &'a str, name: &str, is_one: impl Fn(&str) -> bool) -> Option<&'a str> {
-    let mut rest = text;
-    while let Some(place) = rest.find('<') {
-        rest = &rest[place + 1..];
-        let end = rest.find('>')?;
-        let own = &rest[..end];
-        let word = own.split(|c: char| c.is_whitespace() || c == '/').next();
-        if word == Some(name) && is_one(own) {
-            return Some(own);
-        }
-        rest = &rest[end..];
-    }
-    None
-}
-
-/// What stands between `tag`, a part of `text`, and the next one.
-fn content<'a>(text: &'a str, tag: &str) -> Option<&'a str> {
-    let from = tag.as_ptr() as usize - text.as_ptr() as usize + tag.len() + 1;
-    let rest = text.get(from..)?;
-    Some(&rest[..rest.find('<')?])
-}
-
-fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
-    let mut rest = tag;
-    while let Some(place) = rest.find(name) {
-        let before = rest[..place].chars().next_back();
-        let after = &rest[place + name.len()..];
-        if before.is_some_and(char::is_whitespace)
-            && let Some(value) = after.trim_start().strip_prefix('=')
-        {
-            let value = value.trim_start();
-            let quote = value.chars().next().filter(|c| ['"', '\''].contains(c))?;
-            let value = &value[1..];
-            return Some(&value[..value.find(quote)?]);
-        }
-        rest = after;
-    }
-    None
-}
-
-/// The numbers of the attribute `name` of `tag`.
-fn numbers<T: std::str::FromStr, const N: usize>(tag: &str, name: &str) -> Result<[T; N], String> {
-    let text = attribute(tag, name).ok_or_else(|| format!("it lacks `{name}`"))?;
-    let values: Option<Vec<T>> =
-        text.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
-    let values = values.and_then(|values| values.try_into().ok());
-    values.ok_or_else(|| format!("`{name}` does not hold {N} numbers"))
+    let from = from.ok_or("its numbers are cut short")?;
+    Ok((from, coding))
 }

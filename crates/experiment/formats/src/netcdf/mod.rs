@@ -9,6 +9,7 @@ mod grid;
 mod growing;
 mod instants;
 mod phase_averages;
+mod phase_averages_writer;
 mod read;
 mod scans;
 mod setting;
@@ -17,9 +18,8 @@ mod stored_scans;
 
 pub(crate) use grid::{even, numbers_of};
 pub use instants::InstantWriter;
-pub use phase_averages::{
-    StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,
-};
+pub use phase_averages::{StoredPhaseAverages, is_phase_averages, phase_averages_bytes};
+pub use phase_averages_writer::{PhaseAveragesWriter, write_phase_averages};
 pub use read::{read_phases, read_plane, read_planes};
 pub use scans::{ScanInstant, ScanSetting, ScanWriter, scan_bytes};
 pub use setting::{PlacedTurbine, PlaneSetting};

@@ -19,7 +19,8 @@ mod sweep;
 pub use crate::clock::now;
 pub use manifest::{Machine, Manifest, read_manifest, sha256, sha256_of_file, write_manifest};
 pub use phase_averages::{
-    StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,
+    PhaseAveragesWriter, StoredPhaseAverages, is_phase_averages, phase_averages_bytes,
+    write_phase_averages,
 };
 pub use pitch_responses::{
     PitchResponseRecord, add_pitch_responses, discard_unreadable_pitch_responses,

@@ -5,7 +5,8 @@ use crate::FileError;
 use std::path::PathBuf;
 
 pub use crate::netcdf::{
-    StoredPhaseAverages, is_phase_averages, phase_averages_bytes, write_phase_averages,
+    PhaseAveragesWriter, StoredPhaseAverages, is_phase_averages, phase_averages_bytes,
+    write_phase_averages,
 };
 
 /// What the name of a file with averages begins with.
@@ -99,6 +100,26 @@ mod tests {
         assert_eq!(PhaseAverages { grid: averages.grid, ..read }, averages);
         assert!(is_phase_averages(&path) && !is_phase_averages(folder.path()));
         assert_eq!(run.phase_averages_paths().unwrap(), [path]);
+    }
+
+    #[test]
+    fn some_points_at_a_time_make_the_same_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let [whole, parts] = ["whole.nc", "parts.nc"].map(|name| folder.path().join(name));
+        let (setting, averages) = write(&whole);
+        let at = |moments: &Moments, points: std::ops::Range<usize>| Moments {
+            n_samples: moments.n_samples[points.clone()].to_vec(),
+            mean: moments.mean.each_ref().map(|values| values[points.clone()].to_vec()),
+            stress: moments.stress.each_ref().map(|values| values[points.clone()].to_vec()),
+        };
+        let head = PhaseAverages { all: Moments::default(), each: Vec::new(), ..averages.clone() };
+        let mut writer = PhaseAveragesWriter::create(&parts, &setting, &head).unwrap();
+        for points in [8..24, 0..3, 3..8] {
+            let bin = |index: usize| at(&averages.each[index], points.clone());
+            writer.write(points.clone(), &at(&averages.all, points.clone()), bin).unwrap();
+        }
+        writer.commit().unwrap();
+        assert_eq!(std::fs::read(whole).unwrap(), std::fs::read(parts).unwrap());
     }
 
     #[test]

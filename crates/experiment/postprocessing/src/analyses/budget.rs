@@ -4,10 +4,10 @@ use super::phases::setting_json;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
-    ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, TURBINE, WIDTH,
+    WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, conditions, refused};
+use crate::wake_fields::{Averaged, Wanted, conditions, refused};
 use analysis::entrainment::{Budget, MeanFlow, Region, budget};
 use report::text_table::{Column, TextTable};
 use report::{Along, Signals, TrackFigure, TrackLine, TrackRow};
@@ -20,7 +20,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, LENGTH, SIDE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED,
-        HUB, LENGTHS, ZEROS, FIGURES,
+        HUB, LENGTHS, ZEROS, MEMORY, FIGURES,
     ],
     run,
 };
@@ -52,7 +52,7 @@ impl BoxRow {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = Averaged::of(request)?;
+    let found = Averaged::of(request, Wanted::PARTS)?;
     let (rows, told) = boxes(request, &found)?;
     let mut remarks = found.remarks.clone();
     remarks.extend(told);

@@ -7,9 +7,10 @@ use super::phases::setting_json;
 use super::{Analysis, Answer, FIGURES, Of, Request, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED, ZEROS,
+    AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, TURBINE, WIDTH,
+    WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, conditions};
+use crate::wake_fields::{Averaged, Wanted, conditions};
 use analysis::entrainment::{FluxPoint, wake_edge};
 use analysis::phases::Decomposition;
 use found::{AtPhase, DiscRow, Energy, RADIUS, SMOOTHING, discs};
@@ -23,7 +24,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, RADIUS, SMOOTHING, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER,
-        WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
+        WIND_SPEED, HUB, LENGTHS, ZEROS, MEMORY, FIGURES,
     ],
     run,
 };
@@ -32,7 +33,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
 const EDGE: f64 = 0.95;
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = Averaged::of(request)?;
+    let found = Averaged::of(request, Wanted::Bins)?;
     let parts = found.decomposition()?;
     let energy = Energy::of(request, &found, &parts)?;
     let (discs, why) = discs(&found)?;

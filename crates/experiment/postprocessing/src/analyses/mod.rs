@@ -22,7 +22,7 @@ mod tune;
 pub(crate) mod vortices;
 mod winds;
 
-pub use crate::request::{AnalysisSetting, Request, Takes};
+pub use crate::request::{AnalysisSetting, Request, Takes, Told, Watch};
 
 use crate::PostprocessingError;
 use basis::records::Statistic;

@@ -7,7 +7,7 @@ mod source;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, DIAMETER, EXCITATION_HZ, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE,
+    self, AZIMUTHS, DIAMETER, EXCITATION_HZ, FIELD, FROM, HUB, LENGTHS, MEMORY, ROTOR_HZ, TURBINE,
     WIND_SPEED, ZEROS,
 };
 use crate::wake_fields::{Fields, Instants, NO_TIMES, TELL_TIMES, refused};
@@ -71,12 +71,6 @@ const OVERLAP: AnalysisSetting = settings::setting(
 );
 const MODES: AnalysisSetting =
     settings::setting("modes", "N", Takes::Number, "Modes whose shapes are kept; 3 when left out");
-const MEMORY: AnalysisSetting = settings::setting(
-    "memory",
-    "MB",
-    Takes::Number,
-    "Memory of a strip of points (MB), one row of points at least; 256 when left out",
-);
 /// Frequencies that the table lists beside those with a name (–).
 const N_LISTED: usize = 5;
 /// Modes whose energy the table shows (–).

@@ -6,13 +6,13 @@ pub(crate) mod figures;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, TURBINE, WIDTH, WIND_SPEED,
-    ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, TURBINE, WIDTH,
+    WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, Fields, averages_bins, conditions};
-use analysis::phases::{Decomposition, PhaseAverager, decompose, standard_error};
+use crate::wake_fields::{Averaged, Wanted, conditions};
+use analysis::phases::{Decomposition, decompose, standard_error};
 use basis::Sense;
-use basis::records::Grid;
+use basis::records::PhaseAverages;
 use report::text_table::{Column, TextTable};
 use serde_json::json;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     ),
     settings: &[
         FIELD, TURBINE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS,
-        ZEROS, OUT, FIGURES,
+        ZEROS, MEMORY, OUT, FIGURES,
     ],
     run,
 };
@@ -40,8 +40,6 @@ const OUT: AnalysisSetting = settings::setting(
 
 /// Widths beside the one that is asked for (–).
 const WIDTHS: [f64; 4] = [0.5, 1.0, 1.5, 2.25];
-/// Points at which widths are compared, about (–).
-const N_COMPARED: usize = 400;
 
 /// One width of window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,14 +54,14 @@ struct WidthRow {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = Averaged::of(request)?;
+    let out = request.text(OUT.name).map(Path::new);
+    let is_drawn = request.text(FIGURES.name).is_some();
+    let found = Averaged::of(request, Wanted::Parts { out, factors: &WIDTHS, is_drawn })?;
     let parts = found.decomposition()?;
     let mut remarks = found.remarks.clone();
-    if let Some(out) = request.text(OUT.name) {
-        found.write(Path::new(out))?;
-        remarks.push(format!("averages written to {out}"));
-    }
-    let widths = widths(request, &found)?;
+    remarks.extend(out.map(|out| format!("averages written to {}", out.display())));
+    let widths: Vec<WidthRow> =
+        found.compared.iter().map(|one| width_row(one, found.setting.wind_speed)).collect();
     remarks.extend(drawn(request, &[figures::signals(&found, &parts)?])?);
     let sums = summed(&found, &parts);
     let text = text(&found, &sums, &widths, request.width());
@@ -82,43 +80,8 @@ fn summed(found: &Averaged, parts: &Decomposition) -> [[f64; 3]; 3] {
     })
 }
 
-/// How samples, errors and periodic part depend on the width, at some points; none where there is no helix or
-/// averages were made before.
-fn widths(request: &Request, found: &Averaged) -> Result<Vec<WidthRow>, PostprocessingError> {
-    let Some(width) = found.head.helix_width else { return Ok(Vec::new()) };
-    if !found.is_made_now() {
-        return Ok(Vec::new());
-    }
-    let mut instants = Fields::instants(request)?;
-    let grid = *instants.file.grid();
-    let stride = grid.len().div_ceil(N_COMPARED).max(1);
-    let kept: Vec<usize> = (0..grid.len()).step_by(stride).collect();
-    let some = Grid { origin: [0.0; 3], spacing: [1.0; 3], n_points: [kept.len(), 1, 1] };
-    let mut averagers = Vec::new();
-    for factor in WIDTHS {
-        let width_deg = (factor * width.to_degrees()).min(360.0);
-        let (angles, span) = (instants.angles.as_ref(), instants.span());
-        let bins = averages_bins(request, &found.path, angles, span, width_deg)?.0;
-        averagers.push((width_deg, PhaseAverager::new(some, bins)));
-    }
-    instants.each(|field, (rotor, helix)| {
-        let values = field
-            .velocity
-            .each_ref()
-            .map(|values| kept.iter().map(|index| values[*index]).collect::<Vec<f32>>());
-        for (_, averager) in &mut averagers {
-            let velocity = values.each_ref().map(Vec::as_slice);
-            // What is wrong with an instant was said when it was averaged before.
-            let _taken = averager.add(field.time, rotor, helix, velocity);
-        }
-        Ok(())
-    })?;
-    let scale = found.setting.wind_speed;
-    Ok(averagers.iter().map(|(width, averager)| width_row(*width, averager, scale)).collect())
-}
-
-fn width_row(width_deg: f64, averager: &PhaseAverager, scale: f64) -> WidthRow {
-    let averages = averager.averages();
+/// How samples, errors and periodic part are in `averages` at some points.
+fn width_row(averages: &PhaseAverages, scale: f64) -> WidthRow {
     let (mut squares, mut n) = ([0.0; 2], 0_usize);
     for (bin, moments) in averages.bins.iter().zip(&averages.each) {
         for point in 0..averages.grid.len() {
@@ -131,12 +94,12 @@ fn width_row(width_deg: f64, averager: &PhaseAverager, scale: f64) -> WidthRow {
             }
         }
     }
-    let parts = decompose(&averages);
+    let parts = decompose(averages);
     let sound: Vec<f64> = parts.periodic[0].iter().copied().filter(|v| v.is_finite()).collect();
     let periodic = sound.iter().sum::<f64>() / sound.len().max(1) as f64;
     let n_instants: u64 = averages.bins.iter().map(|bin| bin.n_instants).sum();
     WidthRow {
-        width_deg,
+        width_deg: averages.helix_width.unwrap_or(0.0).to_degrees(),
         n_instants: n_instants as f64 / averages.bins.len() as f64,
         errors: squares.map(|sum| (sum / n.max(1) as f64).sqrt() / scale),
         periodic: periodic.max(0.0).sqrt() / scale,

@@ -8,10 +8,10 @@ mod surfaces;
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
 use crate::wake_fields::settings::{
-    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, ROTOR_HZ, TURBINE, WIDTH,
-    WIND_SPEED, ZEROS,
+    self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, ROTOR_HZ, TURBINE,
+    WIDTH, WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, shown};
+use crate::wake_fields::{Averaged, Wanted, shown};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
@@ -27,7 +27,7 @@ pub(super) const ANALYSIS: Analysis = Analysis {
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, LEAST, BLADES, PAIR, SURFACES, CRITERION, LEVEL, ROTOR_HZ, BINS, CYCLES,
-        WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, FIGURES,
+        WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED, HUB, LENGTHS, ZEROS, MEMORY, FIGURES,
     ],
     run,
 };
@@ -222,7 +222,7 @@ impl Found {
 }
 
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
-    let found = Found::of(request, Averaged::of(request)?)?;
+    let found = Found::of(request, Averaged::of(request, Wanted::Bins)?)?;
     let mut remarks = found.remarks.clone();
     let (surface, told) = surfaces::made(request, &found)?;
     remarks.extend(told);

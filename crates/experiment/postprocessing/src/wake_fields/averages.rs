@@ -1,19 +1,21 @@
 //! Averages by phase: those that were kept, or made of instants.
 
-use super::settings::{self, BINS, CYCLES, FIELD, TURBINE, WIDTH};
+use super::compared::Compared;
+use super::making::{Making, Rates, Wanted, in_fields};
+use super::settings::{FIELD, TURBINE};
+use super::shown::shown;
 use super::source::Instants;
+use super::strips::{Strip, each_strip};
 use super::{Angles, Fields, refused};
 use crate::PostprocessingError;
 use crate::phase::query::folder_of;
-use crate::request::Request;
-use analysis::phases::{Bins, Decomposer, Decomposition, PhaseAverager, PhaseError};
-use basis::Sense;
+use crate::request::{Request, Told};
+use analysis::phases::{Decomposer, Decomposition};
 use basis::records::{FieldSetting, Grid, Moments, PhaseAverages};
-use formats::records::{StoredPhaseAverages, write_phase_averages};
-use std::path::{Path, PathBuf};
-
-/// Most memory that averages may take (bytes).
-const MOST_MEMORY: u64 = 16 << 30;
+use formats::records::{PhaseAveragesWriter, StoredPhaseAverages};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Averages by phase.
 pub(crate) struct Averaged {
@@ -27,23 +29,29 @@ pub(crate) struct Averaged {
     pub(crate) remarks: Vec<String>,
     /// Rotor and excitation frequency (Hz), where they are known.
     pub(crate) rates: Rates,
+    /// Averages at some points in windows of other widths, where they were made now and asked for.
+    pub(crate) compared: Vec<PhaseAverages>,
     moments: Made,
 }
 
 enum Made {
     Stored(Box<StoredPhaseAverages>),
-    Now(Box<PhaseAverager>),
+    /// Taken apart, and the bins that were kept, by their numbers.
+    Now(Box<Decomposition>, BTreeMap<usize, Moments>),
 }
 
 impl Averaged {
-    /// Those that `request` is about: kept ones, or made of instants now.
+    /// Those that `request` is about, with what is `wanted` of them: kept ones, or made of instants now.
     ///
     /// # Errors
     /// [`PostprocessingError`].
-    pub(crate) fn of(request: &Request) -> Result<Self, PostprocessingError> {
-        match Fields::open(request, true)? {
-            Fields::Averages(stored, file) => Self::kept(request, *stored, file),
-            Fields::Instants(instants) => Self::made(request, *instants),
+    pub(crate) fn of(request: &Request, wanted: Wanted) -> Result<Self, PostprocessingError> {
+        match (Fields::open(request, true)?, wanted) {
+            (Fields::Averages(_, file), Wanted::Parts { out: Some(_), .. }) => {
+                Err(refused(&file, "holds averages already", "copy the file"))
+            }
+            (Fields::Averages(stored, file), _) => Self::kept(request, *stored, file),
+            (Fields::Instants(instants), _) => Self::made(request, *instants, wanted),
         }
     }
 
@@ -77,67 +85,65 @@ impl Averaged {
             head,
             remarks,
             rates,
+            compared: Vec::new(),
             moments: Made::Stored(Box::new(stored)),
         })
     }
 
-    fn made(request: &Request, mut instants: Instants) -> Result<Self, PostprocessingError> {
+    fn made(
+        request: &Request,
+        mut instants: Instants,
+        wanted: Wanted,
+    ) -> Result<Self, PostprocessingError> {
         let path = instants.file.path().to_owned();
-        let width_deg = settings::positive(request, &WIDTH, Bins::WIDTH.to_degrees())?;
-        let (angles, span) = (instants.angles.as_ref(), instants.span());
-        let (bins, rates, mut remarks) = bins(request, &path, angles, span, width_deg)?;
+        let making = Making::of(request, &instants, wanted)?;
+        let mut remarks = making.remarks.clone();
         let grid = *instants.file.grid();
-        let memory = PhaseAverager::memory(grid.len() as u64, &bins);
-        if memory > MOST_MEMORY {
-            let problem = format!(
-                "has {} points, which take {:.1} GiB in {} bins",
-                grid.len(),
-                memory as f64 / 2_f64.powi(30),
-                bins.len()
-            );
-            let fix = "ask for fewer bins (--bins, --cycles), or give a part of the field";
-            return Err(refused(&path, problem, fix));
-        }
-        remarks.push(format!(
-            "averages of {} points in {} bins take {:.1} MB",
-            grid.len(),
-            bins.len(),
-            memory as f64 / 1e6
-        ));
-        let mut averager = PhaseAverager::new(grid, bins);
-        let in_fields = |error: PhaseError| {
-            refused(&path, error.to_string(), "correct the times or azimuths of the fields")
+        let mut head = PhaseAverages { grid, ..making.counts.head() };
+        let mut writer = match wanted {
+            Wanted::Parts { out: Some(out), .. } => {
+                Some(PhaseAveragesWriter::create(out, &instants.setting, &head)?)
+            }
+            _ => None,
         };
-        instants.each(|field, (rotor, helix)| {
-            let velocity = field.velocity.each_ref().map(Vec::as_slice);
-            averager.add(field.time, rotor, helix, velocity).map_err(in_fields)?;
-            Ok(())
-        })?;
-        let head = averager.head();
+        let all: Vec<usize> = (0..head.bins.len()).collect();
+        let kept = match wanted {
+            Wanted::Bins => all.clone(),
+            Wanted::Parts { is_drawn: true, .. } if grid.spanned().len() == 2 => shown(&head),
+            Wanted::Parts { .. } => Vec::new(),
+        };
+        let mut compared = Compared::new(grid.len(), making.sets);
+        let mut whole = Strip::default();
+        let (plan, batches) = (&making.plan, &making.batches);
+        let fields = (&mut instants.file, instants.places.start);
+        let done = each_strip(
+            fields,
+            (plan, batches),
+            if writer.is_some() { &all } else { &kept },
+            |read| Ok(compared.look(read)?),
+            |points, mut strip| {
+                request.watch.tell(&Told::Share(points.end as f64 / grid.len() as f64));
+                if let Some(writer) = &mut writer {
+                    let mut each = std::mem::take(&mut strip.each);
+                    strip.each = kept.iter().map(|index| each[*index].clone()).collect();
+                    writer.write(points, &strip.all, |index| std::mem::take(&mut each[index]))?;
+                }
+                whole.append(strip);
+                Ok(())
+            },
+        );
+        done.map_err(|trouble| in_fields(&path, trouble))?;
+        if let Some(writer) = writer {
+            writer.commit()?;
+        }
+        head.all = whole.all;
         let n_samples = (grid.len() * instants.places.len()) as f64;
-        if averager.n_holes() > 0 {
-            remarks.push(format!(
-                "{} of {} samples are holes ({:.2} %): they count in no average",
-                averager.n_holes(),
-                n_samples,
-                100.0 * averager.n_holes() as f64 / n_samples
-            ));
-        }
-        let n_zeros = instants.file.n_zeros();
-        if n_zeros > 0 {
-            remarks.push(format!(
-                "{n_zeros} of {n_samples} velocities are exactly zero ({:.2} %): taken as --zeros says, for air that stands still when left out",
-                100.0 * n_zeros as f64 / n_samples
-            ));
-        }
+        remarks.extend(holes(whole.n_holes, n_samples));
+        remarks.extend(zeros(instants.file.n_zeros(), n_samples));
         remarks.extend(empty_bins(&head));
-        let setting = instants.setting;
-        Ok(Self { path, setting, head, remarks, rates, moments: Made::Now(Box::new(averager)) })
-    }
-
-    /// Whether they were made of instants now.
-    pub(crate) fn is_made_now(&self) -> bool {
-        matches!(self.moments, Made::Now(_))
+        let (setting, rates, compared) = (instants.setting, making.rates, compared.finish());
+        let moments = Made::Now(Box::new(whole.parts), kept.into_iter().zip(whole.each).collect());
+        Ok(Self { path, setting, head, remarks, rates, compared, moments })
     }
 
     /// The points.
@@ -149,10 +155,21 @@ impl Averaged {
     ///
     /// # Errors
     /// [`PostprocessingError::File`].
+    ///
+    /// # Panics
+    /// Where that bin was not wanted.
     pub(crate) fn bin(&self, index: usize) -> Result<Moments, PostprocessingError> {
         match &self.moments {
             Made::Stored(stored) => Ok(stored.bin(index)?),
-            Made::Now(averager) => Ok(averager.bin(index)),
+            Made::Now(_, each) => Ok(each[&index].clone()),
+        }
+    }
+
+    /// Whether there is bin number `index`.
+    pub(crate) fn has_bin(&self, index: usize) -> bool {
+        match &self.moments {
+            Made::Stored(_) => true,
+            Made::Now(_, each) => each.contains_key(&index),
         }
     }
 
@@ -160,26 +177,16 @@ impl Averaged {
     ///
     /// # Errors
     /// [`PostprocessingError::File`].
-    pub(crate) fn decomposition(&self) -> Result<Decomposition, PostprocessingError> {
+    pub(crate) fn decomposition(&self) -> Result<Cow<'_, Decomposition>, PostprocessingError> {
+        let stored = match &self.moments {
+            Made::Now(parts, _) => return Ok(Cow::Borrowed(parts)),
+            Made::Stored(stored) => stored,
+        };
         let mut decomposer = Decomposer::new(&self.head.all);
         for index in 0..self.head.bins.len() {
-            decomposer.add(&self.bin(index)?);
+            decomposer.add(&stored.bin(index)?);
         }
-        Ok(decomposer.finish())
-    }
-
-    /// Writes them to `path`, where they were made now.
-    ///
-    /// # Errors
-    /// [`PostprocessingError::File`].
-    pub(crate) fn write(&self, path: &Path) -> Result<(), PostprocessingError> {
-        match &self.moments {
-            Made::Now(averager) => {
-                let bin = |index: usize| averager.bin(index);
-                Ok(write_phase_averages(path, &self.setting, &self.head, bin)?)
-            }
-            Made::Stored(_) => Err(refused(&self.path, "holds averages already", "copy the file")),
-        }
+        Ok(Cow::Owned(decomposer.finish()))
     }
 
     /// Bin number `index` in words: its azimuths.
@@ -230,6 +237,26 @@ impl Averaged {
     }
 }
 
+/// How many of `n_samples` were missing, in words; none where none was.
+fn holes(n_holes: u64, n_samples: f64) -> Option<String> {
+    (n_holes > 0).then(|| {
+        format!(
+            "{n_holes} of {n_samples} samples are holes ({:.2} %): they count in no average",
+            100.0 * n_holes as f64 / n_samples
+        )
+    })
+}
+
+/// How many of `n_samples` were zero, in words; none where none was.
+fn zeros(n_zeros: u64, n_samples: f64) -> Option<String> {
+    (n_zeros > 0).then(|| {
+        format!(
+            "{n_zeros} of {n_samples} velocities are exactly zero ({:.2} %): taken as --zeros says, for air that stands still when left out",
+            100.0 * n_zeros as f64 / n_samples
+        )
+    })
+}
+
 /// Which bins are empty, in words.
 fn empty_bins(head: &PhaseAverages) -> Vec<String> {
     let empty: Vec<String> = (0..head.bins.len())
@@ -245,36 +272,4 @@ fn empty_bins(head: &PhaseAverages) -> Vec<String> {
         head.bins.len(),
         empty.join(", ")
     )]
-}
-
-/// Frequencies of rotor and, with its sense, helix (Hz).
-pub(crate) type Rates = Option<(f64, Option<(f64, Sense)>)>;
-
-/// The bins that `request` asks for with windows of `width_deg`, at the `angles` of the file at `path`
-/// between `span` (s); the frequencies; and what must be said.
-pub(crate) fn bins(
-    request: &Request,
-    path: &Path,
-    angles: Option<&Angles>,
-    span: [f64; 2],
-    width_deg: f64,
-) -> Result<(Bins, Rates, Vec<String>), PostprocessingError> {
-    let wrong = |error: PhaseError| {
-        let fix = "ask for other --bins, --cycles or --width";
-        refused(path, error.to_string(), fix)
-    };
-    let n_bins = settings::whole(request, &BINS, 1, Bins::N_AZIMUTHS)?;
-    let Some(angles) = angles else {
-        let remark = "no azimuths are told (--azimuths): all instants are in one bin, and periodic parts are not told from random ones";
-        return Ok((Bins::of_rotor(1).map_err(wrong)?, None, vec![remark.to_owned()]));
-    };
-    let rates = angles.rates(span);
-    let n_cycles = settings::whole(request, &CYCLES, 0, Bins::N_CYCLES)?;
-    let bins = match rates {
-        Some((rotor, Some((helix, sense)))) if n_cycles > 0 => {
-            Bins::of_helix(n_bins, rotor / helix, n_cycles, sense, width_deg.to_radians())
-        }
-        _ => Bins::of_rotor(n_bins),
-    };
-    Ok((bins.map_err(wrong)?, rates, Vec::new()))
 }

@@ -1,15 +1,11 @@
 //! Maps of fields in planes, in rotor diameters from the hub.
 
-use super::{Averaged, conditions};
+use super::{Averaged, conditions, shown};
 use crate::PostprocessingError;
 use analysis::grids::widened;
-use basis::angle::wrap_to_half_turn;
-use basis::records::{FieldSetting, Grid, Moments, PhaseAverages};
+use basis::records::{FieldSetting, Grid, Moments};
 use report::{MapColours, MapFigure, MapPanel};
-use std::f64::consts::TAU;
 
-/// Phases that a figure shows beside the mean (–).
-const N_PHASES: usize = 5;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A map of `values` over the axes that `grid` spans, in diameters of `setting` from its hub; none of a grid
@@ -57,7 +53,7 @@ pub(crate) fn by_phase(
         Some(MapPanel { points, ..panel(grid, setting, title, &over)? })
     };
     let mut panels = Vec::from_iter(map("mean".to_owned(), &averaged.head.all, Vec::new()));
-    for index in shown(&averaged.head) {
+    for index in shown(&averaged.head).into_iter().filter(|index| averaged.has_bin(*index)) {
         let n = averaged.head.bins[index].n_instants;
         let title = format!("{}, n = {n}", averaged.name_of_bin(index));
         panels.extend(map(title, &averaged.bin(index)?, marks(index)));
@@ -85,27 +81,4 @@ pub(crate) fn by_phase(
 /// [`PostprocessingError::File`].
 pub(crate) fn velocity_by_phase(averaged: &Averaged) -> Result<MapFigure, PostprocessingError> {
     by_phase(averaged, averaged.grid(), |moments| widened(&moments.mean[0]), |_| Vec::new())
-}
-
-/// Numbers of the bins that a figure shows, spread over a cycle of the helix, or else a revolution; none of
-/// them empty.
-pub(crate) fn shown(head: &PhaseAverages) -> Vec<usize> {
-    let n = head.bins.len();
-    if n < 2 {
-        return Vec::new();
-    }
-    let advance = |index: usize| {
-        let pair = head.bins[index].helix.zip(head.bins[index + 1].helix);
-        pair.map_or(0.0, |(a, b)| wrap_to_half_turn(b - a).abs())
-    };
-    // Up to a rounding of the azimuths.
-    let is_within = |turned: &mut f64, index: usize| {
-        let before = *turned;
-        *turned += if index + 1 < n { advance(index) } else { 0.0 };
-        (before < TAU - 1e-3).then_some(index)
-    };
-    let cycle = (0..n).scan(0.0, is_within);
-    let sound: Vec<usize> = cycle.filter(|index| head.bins[*index].n_instants > 0).collect();
-    let n_shown = sound.len().min(N_PHASES);
-    (0..n_shown).map(|place| sound[place * sound.len() / n_shown]).collect()
 }

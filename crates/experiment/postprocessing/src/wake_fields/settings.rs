@@ -83,6 +83,13 @@ pub(crate) const WIDTH: AnalysisSetting = setting(
     Takes::Number,
     "Width of a window of helix azimuth (deg); 40 when left out",
 );
+/// Memory of a strip.
+pub(crate) const MEMORY: AnalysisSetting = setting(
+    "memory",
+    "MB",
+    Takes::Number,
+    "Memory of a strip of points (MB), one row of points at least; 256 when left out",
+);
 /// Frequency of the rotor.
 pub(crate) const ROTOR_HZ: AnalysisSetting = setting(
     "rotor-hz",

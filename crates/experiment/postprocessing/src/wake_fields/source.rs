@@ -5,7 +5,8 @@ use super::{Angles, refused};
 use crate::PostprocessingError;
 use crate::phase::query::folder_of;
 use crate::request::Request;
-use basis::records::{Field, FieldSetting};
+use analysis::phases::PhaseInstant;
+use basis::records::FieldSetting;
 use formats::fields::FieldFile;
 use formats::records::{RunFolder, StoredPhaseAverages, is_phase_averages};
 use std::path::{Path, PathBuf};
@@ -113,28 +114,24 @@ impl Instants {
         [times[0], times[times.len() - 1]]
     }
 
-    /// Hands `take` each instant that counts with its azimuths; zeros where they are not told.
+    /// The instants that count with their azimuths; zeros where they are not told.
     ///
     /// # Errors
-    /// Those of reading, of `take`, and [`PostprocessingError::Fields`] for an instant beyond the azimuths.
-    pub(crate) fn each(
-        &mut self,
-        mut take: impl FnMut(&Field, (f64, Option<f64>)) -> Result<(), PostprocessingError>,
-    ) -> Result<(), PostprocessingError> {
-        let mut field = self.file.empty();
-        for index in self.places.clone() {
-            self.file.read(index, &mut field)?;
-            let angles = match &self.angles {
-                Some(angles) => angles.at(field.time).ok_or_else(|| {
-                    let problem =
-                        format!("has an instant at {} s, beyond the azimuths", field.time);
-                    refused(self.file.path(), problem, "give azimuths over the time of all fields")
-                })?,
-                None => (0.0, None),
-            };
-            take(&field, angles)?;
-        }
-        Ok(())
+    /// [`PostprocessingError::Fields`] for an instant beyond the azimuths.
+    pub(crate) fn phases(&self) -> Result<Vec<PhaseInstant>, PostprocessingError> {
+        let Some(angles) = &self.angles else {
+            let still = |time: &f64| PhaseInstant { time: *time, rotor: 0.0, helix: None };
+            return Ok(self.times().iter().map(still).collect());
+        };
+        let phase = |time: &f64| match angles.at(*time) {
+            Some((rotor, helix)) => Ok(PhaseInstant { time: *time, rotor, helix }),
+            None => {
+                let problem = format!("has an instant at {time} s, beyond the azimuths");
+                let fix = "give azimuths over the time of all fields";
+                Err(refused(self.file.path(), problem, fix))
+            }
+        };
+        self.times().iter().map(phase).collect()
     }
 }
 

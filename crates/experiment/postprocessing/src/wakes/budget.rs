@@ -3,7 +3,7 @@
 use super::kept::{Kept, Run};
 use crate::PostprocessingError;
 use crate::analyses::budget::shown;
-use crate::wake_fields::{Averaged, Fields};
+use crate::wake_fields::{Averaged, Fields, Wanted};
 use report::{Signals, TrackFigure};
 
 /// Name under which analyses know volumes at instants.
@@ -42,7 +42,8 @@ impl Budgets {
             let note = run.too_large("budgets", VOLUMES, &how_many, "budget --bins 1 --cycles 0");
             return self.notes.push(note);
         }
-        let found = Averaged::of(&request).and_then(|averaged| shown(&request, &averaged));
+        let found =
+            Averaged::of(&request, Wanted::PARTS).and_then(|averaged| shown(&request, &averaged));
         self.take(run, VOLUMES, found);
     }
 

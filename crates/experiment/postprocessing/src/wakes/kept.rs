@@ -2,7 +2,7 @@
 
 use crate::PostprocessingError;
 use crate::request::Request;
-use crate::wake_fields::Averaged;
+use crate::wake_fields::{Averaged, Wanted};
 use basis::records::Summary;
 use formats::records::{RunFolder, StoredPhaseAverages};
 use miette::Diagnostic;
@@ -103,7 +103,7 @@ impl Kept {
         if let Some(turbine) = turbine_at(run.summary, &stored) {
             request = request.with("turbine", turbine);
         }
-        let averaged = Averaged::of(&request).map_err(|error| run.told(&error))?;
+        let averaged = Averaged::of(&request, Wanted::Bins).map_err(|error| run.told(&error))?;
         let output = output_of(&field).to_owned();
         Ok(Self { output, field, request, averaged })
     }
