@@ -1,13 +1,13 @@
 //! Speed of averages by phase over large fields: `cargo bench -p wakemix-benches --bench phases`.
 //!
-//! Two files in NetCDF: a part of ten million points at a thousand instants, and all of them at a few. Each
-//! is read by the system and as fields, from memory (it was written just before) and, once the system was
-//! told to forget it, from the disk; then `analyse phases` goes over it, in 204 bins, strip by strip. A file of ten
-//! million points at a thousand instants has 120 GB, more than most memories: there the disk is the limit,
-//! read past the system's memory in large pieces. Sums of fields that lie in memory are held against what one
-//! core's memory gives to a loop that reads and writes in place.
-//! Options after `--`: `quick` for a hundredth of the points, `memory=MB` for strips of that (256), a number
-//! for the instants of all points (40).
+//! Two files in NetCDF: a part of ten million points at a thousand instants, and all of them at a few.
+//! Each is read by the system and as fields, from memory (it was written just before) and, once the
+//! system was told to forget it, from the disk; then `analyse phases` goes over it, in 204 bins, strip
+//! by strip. A file of ten million points at a thousand instants has 120 GB, more than most memories:
+//! there the disk is the limit, read past the system's memory in large pieces. Sums of fields that lie
+//! in memory are held against what one core's memory gives to a loop that reads and writes in place.
+//! Options after `--`: `quick` for a hundredth of the points, `memory=MB` for strips of that (256), a
+//! number for the instants of all points (40).
 
 use analysis::phases::{Bins, PhaseAverager};
 use basis::records::{Field, Grid, Plane, PlaneAxes};

@@ -1,6 +1,8 @@
 //! The triple decomposition: mean, periodic and random parts, and the stresses of each.
 
 use basis::records::{Moments, PhaseAverages, STRESSES};
+use multiversion::multiversion;
+use std::ops::Range;
 
 /// Mean velocity and the stresses of its periodic and random fluctuations, at each point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +31,29 @@ impl Decomposition {
         }
         self.n_bins.extend_from_slice(&other.n_bins);
         self.fewest.extend_from_slice(&other.fewest);
+    }
+}
+
+/// Points that are taken in side by side.
+const CHUNK: usize = 64;
+
+/// What a stress of n samples weighs.
+#[derive(Clone, Copy, Default)]
+struct Weights {
+    /// Whether it counts.
+    is_in: bool,
+    /// In the random part, without bias: samples about their own mean, n/(n − 1).
+    random: f64,
+    /// In what that mean scatters by, 1/(n − 1).
+    noise: f64,
+}
+
+impl Weights {
+    fn of(n: u32) -> Self {
+        let is_in = n > 1;
+        let n = f64::from(n);
+        let noise = 1.0 / (n - 1.0);
+        Self { is_in, random: n * noise, noise }
     }
 }
 
@@ -71,33 +96,43 @@ impl Decomposer {
     /// Where it has other points.
     pub fn add(&mut self, bin: &Moments) {
         assert_eq!(bin.n_samples.len(), self.n_bins.len(), "bins of one grid");
-        for ((n, n_bins), fewest) in
-            bin.n_samples.iter().zip(&mut self.n_bins).zip(&mut self.fewest)
-        {
-            *n_bins += u32::from(*n > 1);
-            *fewest = if *n > 1 { (*fewest).min(*n) } else { *fewest };
+        add(self, bin);
+    }
+
+    /// The same at `points`, as many as a chunk has at most: what samples weigh is found once for all
+    /// stresses.
+    #[inline(always)]
+    fn add_at(&mut self, bin: &Moments, points: Range<usize>) {
+        let samples = &bin.n_samples[points.clone()];
+        let mut weights = [Weights::default(); CHUNK];
+        let counts = self.n_bins[points.clone()].iter_mut().zip(&mut self.fewest[points.clone()]);
+        for ((n, weight), (n_bins, fewest)) in samples.iter().zip(&mut weights).zip(counts) {
+            *weight = Weights::of(*n);
+            *n_bins += u32::from(weight.is_in);
+            *fewest = if weight.is_in { (*fewest).min(*n) } else { *fewest };
         }
-        for ((sum, about), mean) in self.mean.iter_mut().zip(&self.about).zip(&bin.mean) {
-            let each = sum.iter_mut().zip(mean.iter().zip(about)).zip(&bin.n_samples);
-            for ((sum, (mean, about)), n) in each {
-                *sum += if *n > 1 { f64::from(*mean) - about } else { 0.0 };
+        let mut away = [[0.0; CHUNK]; 3];
+        for (component, away) in away.iter_mut().enumerate() {
+            let about = &self.about[component][points.clone()];
+            let mean = &bin.mean[component][points.clone()];
+            let each = away.iter_mut().zip(mean.iter().zip(about)).zip(&weights);
+            for ((away, (mean, about)), weight) in each {
+                *away = if weight.is_in { f64::from(*mean) - about } else { 0.0 };
             }
+            let sums = &mut self.mean[component][points.clone()];
+            sums.iter_mut().zip(away).for_each(|(sum, away)| *sum += *away);
         }
         for (place, components) in STRESSES.into_iter().enumerate() {
-            let [a, b] = components.map(|c| bin.mean[c].iter().zip(&self.about[c]));
-            let sums = self.products[place].iter_mut().zip(&mut self.random[place]);
-            let sums = sums.zip(&mut self.noise[place]);
-            let samples = bin.stress[place].iter().zip(&bin.n_samples);
-            for (((sums, a), b), (stress, n)) in sums.zip(a).zip(b).zip(samples) {
-                let ((product, random), noise) = sums;
-                let is_in = *n > 1;
-                let n = f64::from(*n);
-                // Without bias: of n samples about their own mean, and less what that mean scatters by.
-                let own = f64::from(*stress) * n / (n - 1.0);
-                let away = [a, b].map(|(mean, about)| f64::from(*mean) - about);
-                *product += if is_in { away[0] * away[1] } else { 0.0 };
-                *random += if is_in { own } else { 0.0 };
-                *noise += if is_in { own / n } else { 0.0 };
+            let [a, b] = components.map(|component| &away[component]);
+            let products = &mut self.products[place][points.clone()];
+            products.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+            let random = self.random[place][points.clone()].iter_mut();
+            let sums = random.zip(&mut self.noise[place][points.clone()]);
+            let stresses = bin.stress[place][points.clone()].iter().zip(&weights);
+            for ((random, noise), (stress, weight)) in sums.zip(stresses) {
+                let stress = if weight.is_in { f64::from(*stress) } else { 0.0 };
+                *random += stress * weight.random;
+                *noise += stress * weight.noise;
             }
         }
     }
@@ -131,6 +166,15 @@ impl Decomposer {
             fewest: self.fewest.iter().map(|n| if *n == u32::MAX { 0 } else { *n }).collect(),
             n_bins,
         }
+    }
+}
+
+/// [`Decomposer::add`] in the instructions of this machine; what comes out is the same on every one.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add(decomposer: &mut Decomposer, bin: &Moments) {
+    let n_points = decomposer.n_bins.len();
+    for start in (0..n_points).step_by(CHUNK) {
+        decomposer.add_at(bin, start..n_points.min(start + CHUNK));
     }
 }
 

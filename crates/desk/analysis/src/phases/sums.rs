@@ -1,12 +1,14 @@
 //! Sums of velocity and of its products at points.
 
 use basis::records::{Moments, STRESSES};
+use multiversion::{multiversion, target::match_target};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Memory of a point in a bin (bytes): count, three sums, six sums of products.
 pub const POINT_BYTES: u64 = (size_of::<u32>() + 9 * size_of::<f64>()) as u64;
-/// Points that are summed side by side: as many as the registers of any machine hold sums of.
-const LANES: usize = 2;
+/// Points whose moments are found side by side.
+const CHUNK: usize = 64;
 
 /// Sums at points, of differences from a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,10 +45,21 @@ impl Sums {
         velocity: [&[f32]; 3],
         reference: &[Vec<f32>; 3],
     ) {
+        add(self, instants, velocity, reference);
+    }
+
+    /// The same, `N` points at a time.
+    #[inline(always)]
+    fn add_by<const N: usize>(
+        &mut self,
+        instants: &[u32],
+        velocity: [&[f32]; 3],
+        reference: &[Vec<f32>; 3],
+    ) {
         let n_points = self.n.len();
-        let even = n_points - n_points % LANES;
-        for start in (0..even).step_by(LANES) {
-            self.add_at::<LANES>(start, instants, velocity, reference);
+        let even = n_points - n_points % N;
+        for start in (0..even).step_by(N) {
+            self.add_at::<N>(start, instants, velocity, reference);
         }
         for start in even..n_points {
             self.add_at::<1>(start, instants, velocity, reference);
@@ -97,27 +110,60 @@ impl Sums {
 
     /// On return `moments` are those of what was summed, about `reference`.
     pub(super) fn moments(&self, reference: &[Vec<f32>; 3], moments: &mut Moments) {
-        let n = &self.n;
-        moments.n_samples.clone_from(n);
-        let first = &self.first;
-        for (component, values) in moments.mean.iter_mut().enumerate() {
-            let (sums, from) = (&first[component], &reference[component]);
-            values.clear();
-            let each = sums.iter().zip(n).zip(from);
-            values.extend(
-                each.map(|((sum, n), from)| (f64::from(*from) + sum / f64::from(*n)) as f32),
-            );
+        moments.n_samples.clone_from(&self.n);
+        let n_points = self.n.len();
+        for values in moments.mean.iter_mut().chain(&mut moments.stress) {
+            values.resize(n_points, 0.0);
         }
-        for (place, values) in moments.stress.iter_mut().enumerate() {
-            let [a, b] = STRESSES[place].map(|component| &first[component]);
-            let sums = &self.second[place];
-            values.clear();
-            let each = sums.iter().zip(n).zip(a.iter().zip(b));
-            values.extend(each.map(|((sum, n), (a, b))| {
-                let n = f64::from(*n);
-                (sum / n - (a / n) * (b / n)) as f32
-            }));
+        find_moments(self, reference, moments);
+    }
+
+    /// The same at `points`, as many as a chunk has at most: divided once for all moments.
+    #[inline(always)]
+    fn moments_at(&self, points: Range<usize>, reference: &[Vec<f32>; 3], moments: &mut Moments) {
+        let mut share = [0.0; CHUNK];
+        for (share, n) in share.iter_mut().zip(&self.n[points.clone()]) {
+            *share = 1.0 / f64::from(*n);
         }
+        let mut away = [[0.0; CHUNK]; 3];
+        for (component, away) in away.iter_mut().enumerate() {
+            let sums = &self.first[component][points.clone()];
+            for (away, (sum, share)) in away.iter_mut().zip(sums.iter().zip(&share)) {
+                *away = sum * share;
+            }
+            let mean = moments.mean[component][points.clone()].iter_mut();
+            let from = &reference[component][points.clone()];
+            mean.zip(from.iter().zip(away))
+                .for_each(|(mean, (from, away))| *mean = (f64::from(*from) + *away) as f32);
+        }
+        for (place, components) in STRESSES.into_iter().enumerate() {
+            let [a, b] = components.map(|component| &away[component]);
+            let sums = self.second[place][points.clone()].iter().zip(&share);
+            let stresses = moments.stress[place][points.clone()].iter_mut();
+            for ((stress, (sum, share)), (a, b)) in stresses.zip(sums).zip(a.iter().zip(b)) {
+                *stress = (sum * share - a * b) as f32;
+            }
+        }
+    }
+}
+
+/// [`Sums::add`] in the instructions of this machine, so many points at a time as its registers hold sums of.
+/// Products are rounded before they are summed on every machine: the sums are the same, bit by bit.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn add(sums: &mut Sums, instants: &[u32], velocity: [&[f32]; 3], reference: &[Vec<f32>; 3]) {
+    match_target! {
+        "x86_64+avx512f" => sums.add_by::<8>(instants, velocity, reference),
+        "x86_64+avx2" => sums.add_by::<4>(instants, velocity, reference),
+        _ => sums.add_by::<2>(instants, velocity, reference),
+    }
+}
+
+/// [`Sums::moments`] in the instructions of this machine, at points that `moments` have room for.
+#[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
+fn find_moments(sums: &Sums, reference: &[Vec<f32>; 3], moments: &mut Moments) {
+    let n_points = sums.n.len();
+    for start in (0..n_points).step_by(CHUNK) {
+        sums.moments_at(start..n_points.min(start + CHUNK), reference, moments);
     }
 }
 

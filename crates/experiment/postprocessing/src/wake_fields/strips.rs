@@ -190,10 +190,14 @@ impl Strip {
         let all = averager.all();
         let mut decomposer = Decomposer::new(&all);
         let (mut each, mut moments) = (Vec::new(), Moments::default());
-        for index in 0..averager.bins().len() {
+        for (index, bin) in averager.phase_bins().iter().enumerate() {
+            let is_kept = kept.binary_search(&index).is_ok();
+            if bin.n_instants == 0 && !is_kept {
+                continue;
+            }
             averager.read_bin(index, &mut moments);
             decomposer.add(&moments);
-            if kept.binary_search(&index).is_ok() {
+            if is_kept {
                 each.push(moments.clone());
             }
         }
