@@ -2,6 +2,9 @@
 
 use super::Vortex;
 
+/// Sightings that tell how strong a vortex is at first (–).
+const AT_FIRST: usize = 3;
+
 /// How vortices are followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracking {
@@ -50,6 +53,21 @@ impl Track {
         let share = (step - before.step) as f64 / (later.step - before.step) as f64;
         let [a, b] = [before, later].map(|one| one.vortex.position[0]);
         Some(a + share * (b - a))
+    }
+
+    /// Position along the first axis (m) where the vorticity in its middle first falls to half of what it was,
+    /// the mean of its first three sightings; linear between sightings. None where it does not as long as it is
+    /// followed.
+    pub fn half_strength_at(&self) -> Option<f64> {
+        let strength = |one: &Sighting| one.vortex.peak_vorticity().abs();
+        let (first, rest) = self.sightings.split_at_checked(AT_FIRST)?;
+        let half = 0.5 * first.iter().map(strength).sum::<f64>() / AT_FIRST as f64;
+        let after = AT_FIRST + rest.iter().position(|one| strength(one) <= half)?;
+        let [before, after] = [after - 1, after].map(|place| &self.sightings[place]);
+        let share = (strength(before) - half) / (strength(before) - strength(after));
+        let [a, b] = [before, after].map(|one| one.vortex.position[0]);
+        // Where the first three fall steeply the last of them may be below the half already.
+        Some(a + share.clamp(0.0, 1.0) * (b - a))
     }
 
     /// Where it is expected at `step` (m): as far on as it went last, or as the air about it goes.

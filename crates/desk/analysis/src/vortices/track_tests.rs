@@ -162,3 +162,36 @@ fn a_blade_has_one_number_on_both_sides() {
         assert_eq!(blade, came / 4 % 3, "track {id}, first seen in frame {step}");
     }
 }
+
+/// A vortex whose core grows so that its vorticity falls by e in a length of `length`, seen each 0.1 m.
+fn fading(length: f64, n: usize) -> Track {
+    let sighting = |step: usize| {
+        let x = 0.1 * step as f64;
+        let core_radius = 0.1 * (0.5 * x / length).exp();
+        Sighting { step, vortex: Vortex { core_radius, ..vortex(x, 1.0) } }
+    };
+    Track { id: 0, sightings: (0..n).map(sighting).collect(), is_born: true }
+}
+
+#[test]
+fn a_vortex_has_half_of_its_strength_left_where_it_does() {
+    let length = 1.7_f64;
+    let track = fading(length, 40);
+    // The mean of the first three is what it was at first.
+    let mean = [0.0, 0.1, 0.2].map(|x: f64| (-x / length).exp()).iter().sum::<f64>() / 3.0;
+    let expected = -length * (0.5 * mean).ln();
+    let found = track.half_strength_at().expect("a place");
+    assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
+    let before = (expected / 0.1).ceil() as usize;
+    assert_eq!(fading(length, before).half_strength_at(), None);
+    assert!(fading(length, before + 1).half_strength_at().is_some());
+    // No strength is known of what is hardly seen.
+    assert_eq!(fading(length, 2).half_strength_at(), None);
+    // It is the first time that counts: what is strong again later does not undo it.
+    let mut twice = fading(length, 40);
+    twice.sightings.extend(fading(length, 3).sightings.iter().map(|one| {
+        let step = one.step + 40;
+        Sighting { step, vortex: Vortex { position: [0.1 * step as f64, 1.0], ..one.vortex } }
+    }));
+    assert_eq!(twice.half_strength_at(), Some(found));
+}

@@ -11,7 +11,7 @@ use crate::wake_fields::settings::{
     self, AZIMUTHS, BINS, CYCLES, DIAMETER, FIELD, FROM, HUB, LENGTHS, MEMORY, ROTOR_HZ, TURBINE,
     WIDTH, WIND_SPEED, ZEROS,
 };
-use crate::wake_fields::{Averaged, Wanted, shown};
+use crate::wake_fields::{Averaged, Wanted};
 use analysis::vortices::{
     Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
     leapfrogs, sine_fit, vortices,
@@ -132,8 +132,8 @@ impl Found {
     ///
     /// # Errors
     /// [`PostprocessingError`].
-    fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
-        let mut found = Self::sought(request, averaged, |_| true)?;
+    pub(crate) fn of(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
+        let mut found = Self::sought(request, averaged)?;
         if found.is_along() {
             match rotor_frequency(request, &found.averaged)? {
                 Some(frequency) => follow_all(request, &mut found, frequency)?,
@@ -149,25 +149,8 @@ impl Found {
         Ok(found)
     }
 
-    /// The vortices in those bins of `averaged` that figures of velocity show, which takes a fraction of the
-    /// time; they are not followed.
-    ///
-    /// # Errors
-    /// [`PostprocessingError`].
-    pub(crate) fn in_some(
-        request: &Request,
-        averaged: Averaged,
-    ) -> Result<Self, PostprocessingError> {
-        let shown = shown(&averaged.head);
-        Self::sought(request, averaged, |index| shown.contains(&index))
-    }
-
-    /// The vortices in those bins of `averaged` that are `wanted`.
-    fn sought(
-        request: &Request,
-        averaged: Averaged,
-        wanted: impl Fn(usize) -> bool,
-    ) -> Result<Self, PostprocessingError> {
+    /// The vortices in the bins of `averaged`, not followed yet.
+    fn sought(request: &Request, averaged: Averaged) -> Result<Self, PostprocessingError> {
         let cut = Cut::of(&averaged)?;
         let least = least(request, &averaged, &cut)?;
         let mut found = Self {
@@ -184,10 +167,7 @@ impl Found {
             cut,
         };
         for index in 0..found.averaged.head.bins.len() {
-            let (vortices, n_lost) = match wanted(index) {
-                true => vortices(&found.section(index)?, &found.search(least)),
-                false => (Vec::new(), 0),
-            };
+            let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
             found.frames.push(vortices);
             found.n_lost += n_lost;
         }

@@ -26,6 +26,8 @@ pub(crate) struct Angles {
     rotor: Vec<f64>,
     /// Empty where there is no helix.
     helix: Vec<f64>,
+    /// Blades whose pitch is told (–).
+    n_blades: usize,
     /// Time beyond the first and the last row for which they hold, straight on (s).
     beyond: f64,
 }
@@ -67,7 +69,8 @@ impl Angles {
             [.., before, last] => 1.001 * (last - before),
             _ => 0.0,
         };
-        Ok(Self { times: times.to_vec(), rotor, helix, beyond })
+        let n_blades = (1..).take_while(|n| column(&BLD_PITCH.of_blade(*n).name).is_ok()).count();
+        Ok(Self { times: times.to_vec(), rotor, helix, n_blades, beyond })
     }
 
     /// Those in the table at `path`: time, `Azimuth_deg` and, where there is one, `Helix_deg`.
@@ -108,7 +111,7 @@ impl Angles {
         let (rotor, helix) = (angles.next().unwrap_or_default(), angles.next().unwrap_or_default());
         dense(path, &rotor, "give four rows a revolution at least")?;
         let beyond = 1e-6 * (times[times.len() - 1] - times[0]);
-        Ok(Self { times, rotor, helix, beyond })
+        Ok(Self { times, rotor, helix, n_blades: 0, beyond })
     }
 
     /// Azimuths of rotor and helix at `time` (rad), linear between rows; none beyond where they hold.
@@ -127,6 +130,11 @@ impl Angles {
             a + share * (b - a)
         };
         Some((between(&self.rotor), (!self.helix.is_empty()).then(|| between(&self.helix))))
+    }
+
+    /// Blades of the turbine (–); none where they are not told.
+    pub(crate) fn n_blades(&self) -> Option<usize> {
+        (self.n_blades > 0).then_some(self.n_blades)
     }
 
     /// Revolutions a second between `span` (s): of the rotor, and of the helix with its sense; none where it

@@ -29,6 +29,8 @@ pub(crate) struct Averaged {
     pub(crate) remarks: Vec<String>,
     /// Rotor and excitation frequency (Hz), where they are known.
     pub(crate) rates: Rates,
+    /// Blades of the turbine that they are of (–), where a run tells them.
+    pub(crate) n_blades: Option<usize>,
     /// Averages at some points in windows of other widths, where they were made now and asked for.
     pub(crate) compared: Vec<PhaseAverages>,
     moments: Made,
@@ -63,10 +65,12 @@ impl Averaged {
     ) -> Result<Self, PostprocessingError> {
         let is_of_run = file != request.run();
         let mut remarks = empty_bins(&stored.head);
-        let mut rates = None;
+        let (mut rates, mut n_blades) = (None, None);
         if is_of_run {
             match Angles::of_run(&folder_of(request.run()), request.text(TURBINE.name)) {
-                Ok(angles) => rates = angles.rates(stored.head.span),
+                Ok(angles) => {
+                    (rates, n_blades) = (angles.rates(stored.head.span), angles.n_blades());
+                }
                 // Of averages that are made the azimuths are known; how fast they grow need not be.
                 Err(error @ PostprocessingError::Fields { .. }) => {
                     remarks.push(format!("how fast rotor and helix turned is not known: {error}"));
@@ -85,6 +89,7 @@ impl Averaged {
             head,
             remarks,
             rates,
+            n_blades,
             compared: Vec::new(),
             moments: Made::Stored(Box::new(stored)),
         })
@@ -143,7 +148,8 @@ impl Averaged {
         remarks.extend(empty_bins(&head));
         let (setting, rates, compared) = (instants.setting, making.rates, compared.finish());
         let moments = Made::Now(Box::new(whole.parts), kept.into_iter().zip(whole.each).collect());
-        Ok(Self { path, setting, head, remarks, rates, compared, moments })
+        let n_blades = instants.angles.as_ref().and_then(Angles::n_blades);
+        Ok(Self { path, setting, head, remarks, rates, n_blades, compared, moments })
     }
 
     /// The points.

@@ -1,6 +1,7 @@
 //! Maps of fields in planes, in rotor diameters from the hub.
 
-use super::{Averaged, conditions, shown};
+use super::shown::shown;
+use super::{Averaged, conditions};
 use crate::PostprocessingError;
 use analysis::grids::widened;
 use basis::records::{FieldSetting, Grid, Moments};

@@ -15,7 +15,6 @@ pub(crate) use angles::Angles;
 pub(crate) use averages::Averaged;
 pub(crate) use making::{Wanted, bins as averages_bins};
 pub(crate) use maps::{axes, by_phase, panel, velocity_by_phase};
-pub(crate) use shown::shown;
 pub(crate) use source::Fields;
 #[cfg(feature = "modes")]
 pub(crate) use source::{Instants, NO_TIMES, TELL_TIMES};

@@ -4,14 +4,15 @@ use super::kept::{Kept, Run};
 use crate::PostprocessingError;
 use crate::analyses::phases::figures::{samples, samples_row};
 use crate::analyses::vortices::Found;
-use crate::analyses::vortices::figures::velocity;
+use crate::analyses::vortices::figures::{curves, velocity};
 use crate::wake_fields::conditions;
-use report::{MapFigure, Signals, TrackRow};
+use report::{CurveFigure, MapFigure, Signals, TrackRow};
 
 /// What was found run by run.
 #[derive(Default)]
 pub(super) struct ByPhase {
     maps: Vec<MapFigure>,
+    curves: Vec<CurveFigure>,
     /// Of each output that averages.
     samples: Vec<Samples>,
     /// What must be said.
@@ -55,10 +56,21 @@ impl ByPhase {
 
     fn take_wake(&mut self, run: &Run, kept: Kept) -> Result<(), PostprocessingError> {
         let Kept { field, request, averaged, .. } = kept;
-        let mut map = velocity(&Found::in_some(&request, averaged)?)?;
+        // Blades make pairs: without them each vortex is taken with the next.
+        let request = match averaged.n_blades {
+            Some(n) => request.with("blades", &n.to_string()),
+            None => request,
+        };
+        let found = Found::of(&request, averaged)?;
+        let mut map = velocity(&found)?;
         map.title = format!("{}: {}, {field}", map.title, run.name());
         map.name = format!("{}-{field}-{}", map.name, run.name());
         self.maps.push(map);
+        for mut curve in curves(&found) {
+            curve.title = format!("{}: {}, {field}", curve.title, run.name());
+            curve.name = format!("{}-{field}-{}", curve.name, run.name());
+            self.curves.push(curve);
+        }
         Ok(())
     }
 
@@ -80,9 +92,10 @@ impl ByPhase {
         }
         Signals {
             title: "The wake by phase".to_owned(),
-            lead: "Velocity averaged in the run by the azimuths of rotor and helix. Lengths are in rotor diameters from the hub. wakemix analyse vortices follows vortices from bin to bin."
+            lead: "Velocity averaged in the run by the azimuths of rotor and helix. Lengths are in rotor diameters from the hub. wakemix analyse vortices lists the vortices that were followed."
                 .to_owned(),
             maps: self.maps,
+            curves: self.curves,
             tracks: alike.into_iter().map(figure).collect(),
             notes: self.notes,
             ..Signals::default()

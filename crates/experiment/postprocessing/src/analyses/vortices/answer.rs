@@ -1,6 +1,6 @@
 //! What was found of vortices in words and in numbers.
 
-use super::{Fitted, Found, Passed};
+use super::{Fitted, Found, Passed, tips};
 use crate::analyses::phases::setting_json;
 use crate::wake_fields::conditions;
 use analysis::vortices::{Track, Vortex};
@@ -53,6 +53,7 @@ pub(super) fn text(found: &Found, width: usize) -> String {
     }
     if !found.tracks.is_empty() {
         text += &table.fitted(width);
+        text += &breakdown_text(found);
     }
     if !found.is_along() {
         text += &hub_text(found);
@@ -77,6 +78,34 @@ pub(super) fn text(found: &Found, width: usize) -> String {
         );
     }
     text + "leapfrog: where a vortex first gets as far downwind as the one before it; core: radius of the greatest speed\n"
+}
+
+/// How far tip vortices are followed, and where they have lost half of their strength, in words.
+fn breakdown_text(found: &Found) -> String {
+    let setting = &found.averaged.setting;
+    let tips: Vec<Track> = tips(found).into_iter().filter(|track| track.is_born).collect();
+    let spread = |places: &[f64]| {
+        let n = places.len() as f64;
+        let over = || places.iter().map(|x| (x - setting.hub[0]) / setting.diameter);
+        let mean = over().sum::<f64>() / n;
+        let deviation = (over().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
+        format!("{mean:.3} ± {deviation:.3} D")
+    };
+    let ends: Vec<f64> = tips
+        .iter()
+        .filter_map(|track| track.sightings.last())
+        .map(|last| last.vortex.position[0])
+        .collect();
+    if ends.is_empty() {
+        return String::new();
+    }
+    let halves: Vec<f64> = tips.iter().filter_map(Track::half_strength_at).collect();
+    let half = match halves.len() {
+        0 => "none of them loses half of its vorticity before that".to_owned(),
+        n => format!("{n} of them have half of their first vorticity left at {}", spread(&halves)),
+    };
+    let (n, end) = (ends.len(), spread(&ends));
+    format!("{n} tip vortices are followed from the rotor to {end}; {half} (standard deviations)\n")
 }
 
 /// The hub vortex of each bin: the strongest within a quarter of a diameter of the hub.
@@ -128,7 +157,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             json!({ "bin": one.step % found.frames.len(), "step": one.step, "vortex": vortex(&one.vortex) })
         });
         let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
-        json!({ "id": track.id, "born": track.is_born, "blade": blade, "sightings": sightings.collect::<Vec<_>>() })
+        json!({ "id": track.id, "born": track.is_born, "blade": blade, "half_strength_x_m": track.half_strength_at(), "sightings": sightings.collect::<Vec<_>>() })
     });
     let leapfrogs = found.leapfrogs.iter().map(|Passed { pair, side, azimuth, one }| {
         json!({

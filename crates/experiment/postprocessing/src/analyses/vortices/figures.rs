@@ -69,7 +69,7 @@ pub(crate) fn velocity(found: &Found) -> Result<MapFigure, PostprocessingError> 
 
 /// Where vortices leapfrog over the azimuth of the helix, and how strong they are over the distance, where
 /// enough of them were followed.
-fn curves(found: &Found) -> Vec<CurveFigure> {
+pub(crate) fn curves(found: &Found) -> Vec<CurveFigure> {
     let leapfrogs = found.sines().next().is_some().then(|| leapfrog_figure(found));
     leapfrogs.into_iter().chain(strength_figure(found)).collect()
 }
