@@ -55,9 +55,9 @@ impl Track {
         Some(a + share * (b - a))
     }
 
-    /// Position along the first axis (m) where the vorticity in its middle first falls to half of what it was,
-    /// the mean of its first three sightings; linear between sightings. None where it does not as long as it is
-    /// followed.
+    /// Position along the first axis (m) where the vorticity in its middle first falls to half of what it
+    /// was, the mean of its first three sightings; linear between sightings. None where it does not as long
+    /// as it is followed.
     pub fn half_strength_at(&self) -> Option<f64> {
         let strength = |one: &Sighting| one.vortex.peak_vorticity().abs();
         let (first, rest) = self.sightings.split_at_checked(AT_FIRST)?;

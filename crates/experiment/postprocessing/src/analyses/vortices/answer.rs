@@ -157,7 +157,13 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             json!({ "bin": one.step % found.frames.len(), "step": one.step, "vortex": vortex(&one.vortex) })
         });
         let blade = found.blades.iter().find(|(id, _)| *id == track.id).map(|(_, blade)| blade + 1);
-        json!({ "id": track.id, "born": track.is_born, "blade": blade, "half_strength_x_m": track.half_strength_at(), "sightings": sightings.collect::<Vec<_>>() })
+        json!({
+            "id": track.id,
+            "born": track.is_born,
+            "blade": blade,
+            "half_strength_x_m": track.half_strength_at(),
+            "sightings": sightings.collect::<Vec<_>>(),
+        })
     });
     let leapfrogs = found.leapfrogs.iter().map(|Passed { pair, side, azimuth, one }| {
         json!({
