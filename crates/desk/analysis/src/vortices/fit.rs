@@ -105,7 +105,15 @@ fn points_about(section: &Section, guess: Guess) -> Vec<usize> {
         let is_sound = section.velocity.iter().all(|values| values[*index].is_finite());
         is_sound && (at[0] - guess.place[0]).hypot(at[1] - guess.place[1]) <= reach
     };
-    (0..section.len()).filter(is_near).collect()
+    // Those in the square about the circle, and one more to either side.
+    let [first, second] = [0, 1].map(|axis| {
+        let step = |at: f64| (at - section.origin[axis]) / section.spacing[axis];
+        let start = (step(guess.place[axis] - reach) - 1.0).max(0.0) as usize;
+        let end = (step(guess.place[axis] + reach) + 2.0).max(0.0) as usize;
+        start..end.min(section.n_points[axis])
+    });
+    let row = |row: usize| first.clone().map(move |column| row * section.n_points[0] + column);
+    second.flat_map(row).filter(is_near).collect()
 }
 
 /// Place and length with the least squares, from `guess` on.
@@ -192,7 +200,8 @@ fn solve(section: &Section, points: &[usize], guess: Guess) -> Option<Linear> {
             ([x * turn, 0.0, 1.0, -y, x, 0.0, jet], section.velocity[1][index]),
         ]
     };
-    for (row, value) in points.iter().flat_map(|index| rows(*index)) {
+    let rows: Vec<_> = points.iter().flat_map(|index| rows(*index)).collect();
+    for (row, value) in &rows {
         for i in 0..N_LINEAR {
             right[i] += row[i] * value;
             for j in 0..N_LINEAR {
@@ -201,9 +210,9 @@ fn solve(section: &Section, points: &[usize], guess: Guess) -> Option<Linear> {
         }
     }
     let found = solved(normal, right)?;
-    let left = |(row, value): ([f64; N_LINEAR], f64)| {
+    let left = |(row, value): &([f64; N_LINEAR], f64)| {
         value - row.iter().zip(&found).map(|(a, b)| a * b).sum::<f64>()
     };
-    let residuals = points.iter().flat_map(|index| rows(*index)).map(left).collect();
+    let residuals = rows.iter().map(left).collect();
     Some(Linear { circulation: found[0], drift: [found[1], found[2]], residuals })
 }

@@ -18,6 +18,7 @@ use analysis::vortices::{
 };
 use basis::angle::{wrap_to_half_turn, wrap_to_turn};
 use cut::Cut;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// The analysis.
@@ -166,11 +167,12 @@ impl Found {
             averaged,
             cut,
         };
-        for index in 0..found.averaged.head.bins.len() {
-            let (vortices, n_lost) = vortices(&found.section(index)?, &found.search(least));
-            found.frames.push(vortices);
-            found.n_lost += n_lost;
-        }
+        let search = found.search(least);
+        let of_bin = |index| Ok(vortices(&found.section(index)?, &search));
+        let bins = (0..found.averaged.head.bins.len()).into_par_iter().map(of_bin);
+        let frames: Vec<(Vec<Vortex>, usize)> = bins.collect::<Result<_, PostprocessingError>>()?;
+        found.n_lost = frames.iter().map(|(_, n_lost)| n_lost).sum();
+        found.frames = frames.into_iter().map(|(vortices, _)| vortices).collect();
         Ok(found)
     }
 
