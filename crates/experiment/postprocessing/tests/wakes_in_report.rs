@@ -210,3 +210,55 @@ fn planes_at_instants_have_modes_and_too_many_the_command_that_finds_them() {
     let told = "wakemix analyse modes baseline --field streamwise --figures pictures";
     assert!(page.contains(told) && !page.contains("modes-energy-baseline"));
 }
+
+/// u and w at `place` (m) at the azimuth `rotor` (rad): a row of vortices above the hub, shed by one blade
+/// after the other, that go with the wind.
+fn tip_vortices([x, _, z]: [f64; 3], rotor: f64) -> [f32; 3] {
+    let apart = WIND / ROTOR_HZ / 3.0;
+    let (core, circulation) = (0.04 * DIAMETER, 0.05 * WIND * DIAMETER);
+    let (mut u, mut w) = (WIND, 0.0);
+    for number in 0..12 {
+        let away =
+            [x - apart * (3.0 * rotor / TAU + f64::from(number)), z - HUB[2] - 0.5 * DIAMETER];
+        let square = away[0].powi(2) + away[1].powi(2);
+        let turn = circulation / TAU * -(-square / core.powi(2)).exp_m1() / square.max(1e-9);
+        u += turn * away[1];
+        w -= turn * away[0];
+    }
+    [u as f32, 0.0, w as f32]
+}
+
+#[test]
+fn vortices_that_were_followed_have_their_strength_on_the_page() {
+    let (_folder, output) = study();
+    let spacing = [0.015 * DIAMETER; 3];
+    let origin = [0.1 * DIAMETER, 0.0, HUB[2] + 0.2 * DIAMETER];
+    let grid = Grid { origin, spacing, n_points: [100, 1, 40] };
+    let mut averager = PhaseAverager::new(grid, Bins::of_rotor(12).expect("bins"));
+    for step in 0..24_u32 {
+        let rotor = TAU * f64::from(step % 12) / 12.0;
+        let values: Vec<[f32; 3]> = (0..grid.len())
+            .map(|point| tip_vortices(grid.position(grid.place(point)), rotor))
+            .collect();
+        let velocity: [Vec<f32>; 3] =
+            std::array::from_fn(|axis| values.iter().map(|value| value[axis]).collect());
+        let time = 10.0 + f64::from(step);
+        averager.add(time, rotor, None, velocity.each_ref().map(Vec::as_slice)).expect("it");
+    }
+    let setting = FieldSetting {
+        name: "wakes, baseline".into(),
+        wind_speed: WIND,
+        turbulence_intensity: None,
+        diameter: DIAMETER,
+        hub: HUB,
+    };
+    let path = output.join("baseline/averages-wake-0D-beside.nc");
+    write_phase_averages(&path, &setting, &averager.head(), |index| averager.bin(index)).unwrap();
+    let page = page(&output);
+    let strength = figure(&page, "vortices-strength-over-distance-wake-0D-beside-baseline");
+    for expected in ["How strong vortices are: baseline", "blade 1 in turn", "blade 3 in turn"] {
+        assert!(strength.contains(expected), "{expected}: {strength}");
+    }
+    // In a row none passes another.
+    assert!(!page.contains("leapfrogging-over-helix-azimuth"));
+}
