@@ -141,6 +141,19 @@ fn averages_by_phase_are_on_the_page_with_their_samples_runs_beside_each_other()
 }
 
 #[test]
+fn surfaces_of_volumes_are_on_the_page() {
+    let (_folder, output) = study();
+    let spacing = [0.15 * DIAMETER; 3];
+    let origin = [0.5 * DIAMETER, -0.45 * DIAMETER, HUB[2] - 0.9 * DIAMETER];
+    let grid = Grid { origin, spacing, n_points: [15, 7, 13] };
+    keep(&output, "helix", "box-volume", grid);
+    let page = page(&output);
+    let surfaces = figure(&page, "vortices-surfaces-box-volume-helix");
+    let title = "Where turning outweighs straining: helix, box-volume";
+    assert!(surfaces.contains(title) && surfaces.contains("Isosurfaces of Q"), "{surfaces}");
+}
+
+#[test]
 fn files_that_are_damaged_or_foreign_are_told_and_withhold_nothing_else() {
     let (_folder, output) = study();
     let short = keep(&output, "helix", "wake-0D-beside", along());

@@ -3,7 +3,7 @@
 mod answer;
 mod cut;
 pub(crate) mod figures;
-mod surfaces;
+pub(crate) mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
 use crate::PostprocessingError;
@@ -206,7 +206,7 @@ impl Found {
 fn run(request: &Request) -> Result<Answer, PostprocessingError> {
     let found = Found::of(request, Averaged::of(request, Wanted::Bins)?)?;
     let mut remarks = found.remarks.clone();
-    let (surface, told) = surfaces::made(request, &found)?;
+    let (surface, told) = surfaces::made(request, &found, request.text(FIGURES.name).is_some())?;
     remarks.extend(told);
     let mut signals = figures::signals(&found)?;
     signals.surfaces.extend(surface);

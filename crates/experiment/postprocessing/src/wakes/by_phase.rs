@@ -5,14 +5,16 @@ use crate::PostprocessingError;
 use crate::analyses::phases::figures::{samples, samples_row};
 use crate::analyses::vortices::Found;
 use crate::analyses::vortices::figures::{curves, velocity};
+use crate::analyses::vortices::surfaces;
 use crate::wake_fields::conditions;
-use report::{CurveFigure, MapFigure, Signals, TrackRow};
+use report::{CurveFigure, MapFigure, Signals, SurfaceFigure, TrackRow};
 
 /// What was found run by run.
 #[derive(Default)]
 pub(super) struct ByPhase {
     maps: Vec<MapFigure>,
     curves: Vec<CurveFigure>,
+    surfaces: Vec<SurfaceFigure>,
     /// Of each output that averages.
     samples: Vec<Samples>,
     /// What must be said.
@@ -71,6 +73,12 @@ impl ByPhase {
             curve.name = format!("{}-{field}-{}", curve.name, run.name());
             self.curves.push(curve);
         }
+        let (surface, _) = surfaces::made(&request, &found, true)?;
+        self.surfaces.extend(surface.map(|mut surface| {
+            surface.title = format!("{}: {}, {field}", surface.title, run.name());
+            surface.name = format!("{}-{field}-{}", surface.name, run.name());
+            surface
+        }));
         Ok(())
     }
 
@@ -96,6 +104,7 @@ impl ByPhase {
                 .to_owned(),
             maps: self.maps,
             curves: self.curves,
+            surfaces: self.surfaces,
             tracks: alike.into_iter().map(figure).collect(),
             notes: self.notes,
             ..Signals::default()

@@ -2,7 +2,7 @@
 
 use super::{BEYOND, CRITERION, Found, LEVEL, SURFACES};
 use crate::PostprocessingError;
-use crate::analyses::{FIGURES, Request};
+use crate::analyses::Request;
 use crate::wake_fields::{conditions, refused, settings};
 use analysis::grids::widened;
 use analysis::isosurface::{Isosurface, isosurface};
@@ -67,10 +67,15 @@ impl Turning {
     }
 }
 
-/// Writes the surfaces that `request` asks for; gives the figure of some of them, and what must be said.
-pub(super) fn made(
+/// Writes the surfaces that `request` asks for; gives the figure of some of them where it is `drawn`, and
+/// what must be said.
+///
+/// # Errors
+/// [`PostprocessingError`].
+pub(crate) fn made(
     request: &Request,
     found: &Found,
+    drawn: bool,
 ) -> Result<(Option<SurfaceFigure>, Option<String>), PostprocessingError> {
     let folder = request.text(SURFACES.name).map(Path::new);
     let is_volume = found.averaged.grid().spanned().len() == 3;
@@ -82,7 +87,7 @@ pub(super) fn made(
             fix,
         ));
     }
-    if !is_volume || folder.is_none() && request.text(FIGURES.name).is_none() {
+    if !is_volume || folder.is_none() && !drawn {
         return Ok((None, None));
     }
     let by = Criterion::of(request);
