@@ -30,6 +30,9 @@ pub struct Vortex {
     pub drift: [f64; 2],
     /// Root mean square of what the fit leaves, over the greatest speed of the vortex (–).
     pub misfit: f64,
+    /// Γ₁ and Γ₂ at the point nearest to its middle, of a window that reaches as far as its core (–), which
+    /// know nothing of the fit; see [`Section::turning`]. None next to an edge or a hole.
+    pub turning: Option<[f64; 2]>,
 }
 
 impl Vortex {
@@ -88,9 +91,23 @@ pub fn fit_vortex(section: &Section, start: [f64; 2], length: f64) -> Option<Vor
         core_radius: PEAK_OVER_LENGTH * guess.length,
         drift: linear.drift,
         misfit: 0.0,
+        turning: None,
     };
+    vortex.turning = turning(section, &vortex);
     vortex.misfit = (squares(&linear) / linear.residuals.len() as f64).sqrt() / vortex.peak_speed();
     vortex.misfit.is_finite().then_some(vortex)
+}
+
+/// Γ₁ and Γ₂ in the middle of `vortex`, of a window as large as its core; none next to an edge or a hole.
+fn turning(section: &Section, vortex: &Vortex) -> Option<[f64; 2]> {
+    let place = [0, 1].map(|axis| {
+        let step = (vortex.position[axis] - section.origin[axis]) / section.spacing[axis];
+        (step.round().max(0.0) as usize).min(section.n_points[axis] - 1)
+    });
+    let far = section.spacing[0].max(section.spacing[1]);
+    let reach = (vortex.core_radius / far).round().max(1.0) as usize;
+    let (first, second) = section.turning_at(place[1] * section.n_points[0] + place[0], reach);
+    (first.is_finite() && second.is_finite()).then_some([first, second])
 }
 
 fn squares(linear: &Linear) -> f64 {

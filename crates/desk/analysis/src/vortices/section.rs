@@ -63,7 +63,8 @@ impl Section {
         (0..self.len()).map(|index| self.turning_at(index, reach)).unzip()
     }
 
-    fn turning_at(&self, index: usize, reach: usize) -> (f64, f64) {
+    /// The same at point number `index`.
+    pub(super) fn turning_at(&self, index: usize, reach: usize) -> (f64, f64) {
         let [n_first, n_second] = self.n_points;
         let place = [index % n_first, index / n_first];
         let inside = |axis: usize, n: usize| place[axis] >= reach && place[axis] + reach < n;

@@ -157,6 +157,22 @@ fn turning_is_one_in_the_middle_and_knows_no_drift() {
     assert!(first[0].is_nan());
 }
 
+/// What is fitted tells Γ₁ and Γ₂ too: in air that drifts Γ₂ of a core alone shows it, and none at an edge.
+#[test]
+fn a_fitted_vortex_tells_how_it_turns() {
+    let drifting = section([31, 31], 0.05, |at| {
+        let [u, v] = lamb_oseen([0.01, -0.02], -1.0, 0.2, at);
+        [u + 7.0, v]
+    });
+    let vortex = fit_vortex(&drifting, [0.0, 0.0], 0.2).expect("a vortex");
+    let [first, second] = vortex.turning.expect("a window");
+    // Where the middle stands between points, the window is a little off it.
+    assert!(second < -0.9 && second >= -1.0 && first.abs() < 0.2, "{first} {second}");
+    let at_the_edge = section([31, 31], 0.05, |at| lamb_oseen([-0.9, 0.0], -1.0, 0.2, at));
+    let vortex = fit_vortex(&at_the_edge, [-0.9, 0.0], 0.2).expect("a vortex");
+    assert_eq!(vortex.turning, None);
+}
+
 #[test]
 fn a_hole_in_the_core_and_plain_shear_are_no_vortex_made_up() {
     let shear = section([31, 31], 0.06, |at| [4.0 * at[1], 0.0]);

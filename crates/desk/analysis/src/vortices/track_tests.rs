@@ -4,7 +4,9 @@ use super::*;
 use std::f64::consts::TAU;
 
 fn vortex(x: f64, y: f64) -> Vortex {
-    Vortex { position: [x, y], circulation: -1.0, core_radius: 0.1, drift: [1.0, 0.0], misfit: 0.0 }
+    let drift = [1.0, 0.0];
+    let (circulation, core_radius) = (-1.0, 0.1);
+    Vortex { position: [x, y], circulation, core_radius, drift, misfit: 0.0, turning: None }
 }
 
 /// Vortices born every `period` steps at x = 0, going at unit speed, each pair turning about its middle: the

@@ -150,6 +150,8 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "core_radius_m": vortex.core_radius,
             "peak_vorticity_1_s": vortex.peak_vorticity(),
             "misfit": vortex.misfit,
+            "gamma_1": vortex.turning.map(|[first, _]| first),
+            "gamma_2": vortex.turning.map(|[_, second]| second),
         })
     };
     let tracks = found.tracks.iter().filter(|track| track.sightings.len() > 2).map(|track| {
