@@ -8,6 +8,9 @@ use wakemix::turbine::steady::SteadyRotor;
 
 /// Most power that an open disc takes out of the wind, Betz (–).
 const BETZ: f64 = 16.0 / 27.0;
+/// What the best of any rotor here exceeds (–): models in wind tunnels lose much to drag, at Reynolds numbers
+/// of 1e5.
+const LEAST: f64 = 0.35;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in library::names() {
@@ -31,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
         println!("most power {best:.3} at a tip-speed ratio of {best_ratio:.1}");
-        assert!((0.4..BETZ).contains(&best), "{name}: {best}");
+        assert!((LEAST..BETZ).contains(&best), "{name}: {best}");
     }
     Ok(())
 }
