@@ -167,7 +167,7 @@ fn a_fitted_vortex_tells_how_it_turns() {
     let vortex = fit_vortex(&drifting, [0.0, 0.0], 0.2).expect("a vortex");
     let [first, second] = vortex.turning.expect("a window");
     // Where the middle stands between points, the window is a little off it.
-    assert!(second < -0.9 && second >= -1.0 && first.abs() < 0.2, "{first} {second}");
+    assert!((-1.0..-0.9).contains(&second) && first.abs() < 0.2, "{first} {second}");
     let at_the_edge = section([31, 31], 0.05, |at| lamb_oseen([-0.9, 0.0], -1.0, 0.2, at));
     let vortex = fit_vortex(&at_the_edge, [-0.9, 0.0], 0.2).expect("a vortex");
     assert_eq!(vortex.turning, None);
