@@ -106,6 +106,7 @@ mod tests {
             n_points: [2, 3, 1],
             time: 12.5,
             velocity: [0.0, 100.0, 200.0].map(|start| (0..6).map(|i| start + i as f32).collect()),
+            pressure: None,
         };
         let mut bytes = Vec::new();
         write_to(&mut bytes, &volume).unwrap();
@@ -149,7 +150,14 @@ mod tests {
             (0..60).map(value).collect::<Vec<f32>>()
         };
         let velocity = slopes.map(component);
-        let volume = Volume { origin: Vector3::ZERO, spacing: 2.0, n_points, time: 0.0, velocity };
+        let volume = Volume {
+            origin: Vector3::ZERO,
+            spacing: 2.0,
+            n_points,
+            time: 0.0,
+            velocity,
+            pressure: None,
+        };
         for index in 0..60 {
             assert_eq!(vorticity(&volume, index), [8.5, 1.0, 5.0], "{index}");
         }

@@ -4,7 +4,7 @@ mod small;
 
 use analysis::phases::helix_azimuth;
 use basis::mbc::to_fixed_frame;
-use basis::records::Plane;
+use basis::records::{PhaseAverages, Plane};
 use basis::{FixedFrame, PerBlade};
 use formats::netcdf::read_planes;
 use formats::records::{StoredPhaseAverages, read_series};
@@ -63,6 +63,25 @@ fn is_near(helix: f64, middle: f64, width: f64) -> bool {
     away.abs() < 0.5 * width
 }
 
+/// Total pressure upstream of the rotor is that of the wind; the pressure alone rises towards it.
+fn check_heads_upstream(volume: &PhaseAverages) {
+    const DIAMETER: f64 = 125.88;
+    let pressure = volume.pressure.as_ref().expect("the lattice knows its pressure");
+    let at = |x: f64| {
+        let step = |axis: usize, place: f64| {
+            ((place - volume.grid.origin[axis]) / volume.grid.spacing[axis]).round() as usize
+        };
+        let index = volume.grid.index([step(0, x), step(1, 0.0), step(2, 90.0)]);
+        let squares = |[u, v, w]: [f32; 3]| 0.5 * f64::from(u * u + v * v + w * w);
+        let speed = volume.all.mean.each_ref().map(|values| values[index]);
+        (f64::from(pressure[index]), squares(speed))
+    };
+    let [far, near] = [-1.2, -0.4].map(|x| at(x * DIAMETER));
+    assert!(near.0 > far.0 + 1.0 && near.0 > 0.0, "{far:?} {near:?}");
+    let heads = [far, near].map(|(pressure, half_square)| pressure + half_square);
+    assert!((heads[1] / heads[0] - 1.0).abs() < 0.02, "{heads:?}");
+}
+
 #[test]
 fn instants_sorted_by_hand_have_the_same_means_and_a_break_changes_no_bit() {
     let folder = written(&case());
@@ -114,6 +133,8 @@ fn instants_sorted_by_hand_have_the_same_means_and_a_break_changes_no_bit() {
     let volume = StoredPhaseAverages::open(&whole.join("averages-rotor-volume.nc")).expect("it");
     let n: u64 = volume.head.bins.iter().map(|bin| bin.n_instants).sum();
     assert_eq!((volume.head.bins.len(), n), (6, u64::from(volume.head.all.n_samples[0])));
+    assert!(averages.pressure.is_none(), "budgets are of volumes");
+    check_heads_upstream(&volume.head);
 
     let mut stopped = options(folder.path(), "stopped");
     let outcome = run(&stopped, &outputs.clone().with(&HALFWAY));

@@ -29,6 +29,8 @@ pub struct Volume {
     pub time: f64,
     /// Velocity components u, v, w (m/s), x fastest.
     pub velocity: [Vec<f32>; 3],
+    /// Pressure above that of undisturbed air, over density (m²/s²); none where the flow does not know it.
+    pub pressure: Option<Vec<f32>>,
 }
 
 /// A plane's mean over instants, without allocation once it is made.

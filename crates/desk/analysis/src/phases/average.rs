@@ -250,6 +250,7 @@ impl PhaseAverager {
             span: self.span(),
             bins: self.phase_bins(),
             all: self.all(),
+            pressure: None,
             each: Vec::new(),
         }
     }

@@ -18,6 +18,7 @@ fn plane(time: f64) -> Plane {
         time,
         averaged: 0.0,
         velocity: [values(8.0), values(0.0), values(-1.0)],
+        pressure: None,
     }
 }
 

@@ -33,6 +33,7 @@ fn fields_in_netcdf() {
         time: 1500.0,
         averaged: 0.0,
         velocity: [vec![9.0; 6], vec![0.0; 6], vec![0.1; 6]],
+        pressure: None,
     };
     let mut writer = InstantWriter::create(&path, &PlaneSetting::example(), &plane).unwrap();
     writer.write(&plane).unwrap();

@@ -136,6 +136,7 @@ fn averages() -> Vec<(&'static str, Vec<u8>)> {
         span: [0.0, 9.0],
         bins: vec![bin; 2],
         all: moments.clone(),
+        pressure: Some(vec![0.5; 2]),
         each: Vec::new(),
     };
     let setting = FieldSetting {

@@ -13,6 +13,7 @@ const FIX: &str = "restore the file, or average again with `wakemix analyse phas
 /// Names of the stresses, as [`basis::records::STRESSES`] orders them.
 pub(super) const STRESS_NAMES: [&str; 6] = ["uu", "vv", "ww", "uv", "uw", "vw"];
 pub(super) const SAMPLES: &str = "n_samples";
+pub(super) const PRESSURE: &str = "all_pressure";
 /// Bytes of a bin beside its points.
 pub(super) const BIN_BYTES: usize = 2 * size_of::<f64>() + 2 * size_of::<i32>();
 /// Bytes of a point in a bin, and of a point over all.
@@ -20,9 +21,10 @@ pub(super) const POINT_BYTES: usize = size_of::<i32>() + 9 * size_of::<f32>();
 /// Bytes of a file beside all of these.
 const HEADER_BYTES: u64 = 8 << 10;
 
-/// Bytes that averages by phase of `n_points` in `n_bins` take on the disk.
+/// Bytes that averages by phase of `n_points` in `n_bins` take on the disk, pressure included.
 pub fn phase_averages_bytes(n_points: u64, n_bins: u64) -> u64 {
-    HEADER_BYTES + (n_bins + 1) * (n_points * POINT_BYTES as u64 + BIN_BYTES as u64)
+    let pressure = n_points * size_of::<f32>() as u64;
+    HEADER_BYTES + pressure + (n_bins + 1) * (n_points * POINT_BYTES as u64 + BIN_BYTES as u64)
 }
 
 /// Averages by phase in a file, whose bins are read one by one.
@@ -127,6 +129,10 @@ fn decode(file: &NcFile, most: usize) -> Result<(FieldSetting, PhaseAverages), S
     if shape_of(file, SAMPLES)? != [rotor.len(), n_z, n_y, n_x] {
         return Err(format!("`{SAMPLES}` is not of its bins and points"));
     }
+    let pressure = match file.variable(PRESSURE) {
+        Ok(_) => Some(read::<f32>(file, PRESSURE, None, grid.len())?),
+        Err(_) => None,
+    };
     let head = PhaseAverages {
         grid,
         rotor_width: positive("rotor_bin_width_rad")?,
@@ -134,6 +140,7 @@ fn decode(file: &NcFile, most: usize) -> Result<(FieldSetting, PhaseAverages), S
         span: [span[0], span[1]],
         bins: (0..rotor.len()).map(bin).collect(),
         all: moments(file, grid.len(), |name| (format!("all_{name}"), None))?,
+        pressure,
         each: Vec::new(),
     };
     Ok((setting, head))

@@ -1,7 +1,7 @@
 //! Averages by phase written to one file, without holding all of it: bin by bin, or some points at a time.
 
 use super::grid::add_grid;
-use super::phase_averages::{BIN_BYTES, POINT_BYTES, SAMPLES, STRESS_NAMES, WHAT};
+use super::phase_averages::{BIN_BYTES, POINT_BYTES, PRESSURE, SAMPLES, STRESS_NAMES, WHAT};
 use super::{COMPONENTS, text, unwritable_as};
 use crate::FileError;
 use crate::atomic::AtomicFile;
@@ -162,7 +162,8 @@ fn signed(count: u32) -> i32 {
     i32::try_from(count).unwrap_or(i32::MAX)
 }
 
-/// The bytes of a file before its first bin: all but the moments of all instants, which are zero.
+/// The bytes of a file before its first bin: all but the moments of all instants, which are zero. Those stand
+/// at the end.
 fn encode(setting: &FieldSetting, head: &PhaseAverages) -> Result<Vec<u8>, Error> {
     let mut file = NcFileBuilder::new();
     file.add_attribute("Conventions", text("CF-1.8"))?;
@@ -187,6 +188,10 @@ fn encode(setting: &FieldSetting, head: &PhaseAverages) -> Result<Vec<u8>, Error
     file.add_attribute("time_span_s", NcAttrValue::Doubles(head.span.to_vec()))?;
     let [z, y, x] = add_grid(&mut file, &head.grid)?;
     let bin = file.add_unlimited_dimension("bin")?;
+    if let Some(pressure) = &head.pressure {
+        let meaning = ("m2 s-2", "mean pressure above that of undisturbed air, over density");
+        add_one(&mut file, PRESSURE, meaning, &[z, y, x], pressure)?;
+    }
     add(&mut file, "all_", &[z, y, x], head.grid.len())?;
     let azimuths = [
         ("rotor_azimuth", "azimuth of blade 1 at the middle of the bin, from the top"),

@@ -69,6 +69,7 @@ mod tests {
             span: [1.0, 11.0],
             bins: (0..3).map(bin).collect(),
             all: moments(-7.0, grid.len()),
+            pressure: Some((0..grid.len()).map(|index| 0.25 * index as f32 - 2.0).collect()),
             each: (0..3).map(|index| moments(1e3 * index as f32, grid.len())).collect(),
         };
         (setting, averages)

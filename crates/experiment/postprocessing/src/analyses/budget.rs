@@ -16,7 +16,7 @@ use serde_json::json;
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
     name: "budget",
-    about: "Budget of mean kinetic energy in boxes along a wake, of fields that fill a volume: advection, flux by stresses, production of turbulence, and what is left, the work of pressure among it where it was not recorded",
+    about: "Budget of mean kinetic energy in boxes along a wake, of fields that fill a volume: advection, work of pressure where it is on record, flux by stresses, production of turbulence, and what is left",
     of: Of::Run("Folder of a run, or a file of fields or of averages by phase"),
     settings: &[
         FIELD, TURBINE, LENGTH, SIDE, BINS, CYCLES, WIDTH, FROM, AZIMUTHS, DIAMETER, WIND_SPEED,
@@ -82,11 +82,17 @@ fn boxes(
         return Err(refused(&found.path, "spans no volume, which a budget needs", fix));
     }
     let (rows, n_holed) = in_a_row(found, length, side)?;
-    let mut told = vec!["pressure is not on record: its work is in the residual, with that of viscous and subgrid stresses".to_owned()];
+    let left = match found.head.pressure {
+        Some(_) => "viscous and subgrid stresses are not on record: their work is in the residual",
+        None => {
+            "pressure is not on record: its work is in the residual, with that of viscous and subgrid stresses"
+        }
+    };
+    let mut told = vec![left.to_owned()];
     if let Some(row) = rows.iter().find(|row| row.holds_rotor()) {
         let [from, to] = row.span.map(|x| x / found.setting.diameter);
         told.push(format!(
-            "the box from {from:.2} to {to:.2} D holds the rotor: what the rotor takes is in its residual"
+            "the box from {from:.2} to {to:.2} D holds the rotor: what the rotor takes is in its residual, and in its neighbours' as far as its forces are smeared"
         ));
     }
     if n_holed > 0 {
@@ -103,7 +109,11 @@ fn in_a_row(
 ) -> Result<(Vec<BoxRow>, usize), PostprocessingError> {
     let (grid, hub) = (found.grid(), found.setting.hub);
     let parts = found.decomposition()?;
-    let flow = MeanFlow { grid, mean: &parts.mean, stress: &parts.total, pressure: None };
+    let pressure = found.head.pressure.as_ref();
+    let pressure: Option<Vec<f64>> =
+        pressure.map(|values| values.iter().copied().map(f64::from).collect());
+    let pressure = pressure.as_deref();
+    let flow = MeanFlow { grid, mean: &parts.mean, stress: &parts.total, pressure };
     let mut steps = [[0, 0]; 3];
     for axis in 1..3 {
         let step = |way: f64| {
@@ -133,13 +143,20 @@ fn in_a_row(
 type Part = (&'static str, fn(&Budget) -> f64);
 
 /// All parts.
-const PARTS: [Part; 5] = [
+const PARTS: [Part; 6] = [
     ("advection", |one| one.advection),
+    ("pressure", |one| one.pressure),
     ("flux by stresses", |one| one.turbulent_flux),
     ("through the sides", |one| one.through_sides),
     ("production", |one| one.production),
     ("residual", Budget::residual),
 ];
+
+/// The parts that `found` knows.
+fn parts(found: &Averaged) -> impl Iterator<Item = Part> {
+    let has_pressure = found.head.pressure.is_some();
+    PARTS.into_iter().filter(move |(name, _)| has_pressure || *name != "pressure")
+}
 
 /// By what budgets are divided: U³D² (m⁵/s³).
 fn scale(found: &Averaged) -> f64 {
@@ -148,13 +165,13 @@ fn scale(found: &Averaged) -> f64 {
 
 fn text(found: &Averaged, rows: &[BoxRow], width: usize) -> String {
     let mut text = format!("{}\n{}\n", conditions(&found.setting), found.samples());
-    let headings = PARTS.iter().map(|(name, _)| Column::number(*name));
+    let headings = parts(found).map(|(name, _)| Column::number(name));
     let headings = headings.chain([Column::number("residual over flux %")]);
     let mut table = TextTable::new([Column::number("x/D")], headings);
     for row in rows {
         let [from, to] = row.span.map(|x| x / found.setting.diameter);
         let parts =
-            PARTS.iter().map(|(_, part)| format!("{:.5}", part(&row.budget) / scale(found)));
+            parts(found).map(|(_, part)| format!("{:.5}", part(&row.budget) / scale(found)));
         let share = 100.0 * row.budget.residual() / row.budget.scale;
         let cells = std::iter::once(format!("{from:.2} to {to:.2}")).chain(parts);
         table.row(cells.chain([format!("{share:.2}")]));
@@ -164,11 +181,13 @@ fn text(found: &Averaged, rows: &[BoxRow], width: usize) -> String {
 }
 
 fn json(found: &Averaged, rows: &[BoxRow]) -> serde_json::Value {
+    let has_pressure = found.head.pressure.is_some();
     let rows = rows.iter().map(|row| {
         let over = |value: f64| value / scale(found);
         json!({
             "from_rotor_m": row.span,
             "advection": over(row.budget.advection),
+            "pressure": has_pressure.then(|| over(row.budget.pressure)),
             "flux_by_stresses": over(row.budget.turbulent_flux),
             "through_sides": over(row.budget.through_sides),
             "production": over(row.budget.production),
@@ -188,8 +207,8 @@ fn signals(found: &Averaged, rows: &[BoxRow]) -> Signals {
     // The work of the rotor and of the pressure about it would dwarf what happens in the wake.
     let behind: Vec<&BoxRow> = rows.iter().filter(|row| row.span[0] > 0.0).collect();
     let middle = |row: &&BoxRow| 0.5 * (row.span[0] + row.span[1]) / found.setting.diameter;
-    let line = |(colour, (name, part)): (usize, &Part)| TrackLine {
-        name: (*name).to_owned(),
+    let line = |(colour, (name, part)): (usize, Part)| TrackLine {
+        name: name.to_owned(),
         colour: colour + 1,
         times: behind.iter().map(middle).collect(),
         values: behind.iter().map(|row| part(&row.budget) / scale(found)).collect(),
@@ -198,7 +217,7 @@ fn signals(found: &Averaged, rows: &[BoxRow]) -> Signals {
     let row = TrackRow {
         label: "gain (U³D²)".to_owned(),
         is_angle: false,
-        lines: PARTS.iter().enumerate().map(line).collect(),
+        lines: parts(found).enumerate().map(line).collect(),
     };
     let tracks = TrackFigure {
         along: Along { label: "x/D", unit: "D" },

@@ -7,6 +7,7 @@
 
 mod keys;
 mod places;
+mod pressure;
 
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
@@ -22,6 +23,7 @@ use farm::case::Run;
 use formats::records::{phase_averages_bytes, write_phase_averages};
 use keys::{OWN, Wanted};
 use places::{Place, Taken};
+use pressure::MeanPressure;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "phase-averages",
@@ -40,6 +42,11 @@ fn sizes(setup: &Prepared, run: &Run, values: &Values) -> Option<(Vec<Place>, Bi
     Some((places::of(&setup.plan, values), wanted.bins.ok()?))
 }
 
+/// Memory of the sums at `n_points` points in `bins`, those of pressure included (bytes).
+fn sums_of(n_points: u64, bins: &Bins) -> u64 {
+    PhaseAverager::memory(n_points, bins) + MeanPressure::memory(n_points)
+}
+
 /// Memory (bytes) that the phase averages of a run of `setup` take, at most: sums, once more where they are
 /// read from a checkpoint, and the wind of now.
 pub(crate) fn memory(setup: &Prepared) -> u64 {
@@ -47,9 +54,7 @@ pub(crate) fn memory(setup: &Prepared) -> u64 {
         let further = setup.case.output.further.iter().filter(|one| one.kind.name() == KIND.name);
         let sizes = further.filter_map(|one| sizes(setup, run, &one.values));
         let of_one = |(places, bins): (Vec<Place>, Bins)| {
-            let of_place = |place: &Place| {
-                2 * PhaseAverager::memory(place.n_points(), &bins) + place.buffers()
-            };
+            let of_place = |place: &Place| 2 * sums_of(place.n_points(), &bins) + place.buffers();
             places.iter().map(of_place).sum::<u64>()
         };
         sizes.map(of_one).sum()
@@ -62,7 +67,7 @@ fn disk(setup: &Prepared, run: &Run, values: &Values) -> u64 {
     let Some((places, bins)) = sizes(setup, run, values) else { return 0 };
     let of_place = |place: &Place| {
         let n = place.n_points();
-        phase_averages_bytes(n, bins.len() as u64) + 2 * PhaseAverager::memory(n, &bins)
+        phase_averages_bytes(n, bins.len() as u64) + 2 * sums_of(n, &bins)
     };
     places.iter().map(of_place).sum()
 }
@@ -71,7 +76,15 @@ struct PhaseAverages {
     schedule: Schedule,
     /// Machine whose azimuths count.
     machine: usize,
-    places: Vec<(Taken, PhaseAverager)>,
+    places: Vec<Averaged>,
+}
+
+/// A plane or a volume, and its sums.
+struct Averaged {
+    taken: Taken,
+    velocity: PhaseAverager,
+    /// Of volumes whose pressure the flow knows: budgets ask for it.
+    pressure: Option<MeanPressure>,
 }
 
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
@@ -79,19 +92,21 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
     let Some(fields) = scene.farm.flow().fields() else { return Ok(None) };
     let Some(wanted) = Wanted::of(setup, run, values) else { return Ok(None) };
     let bins = wanted.bins?;
-    let mut sums: Option<std::vec::IntoIter<PhaseAverager>> =
+    let mut sums: Option<std::vec::IntoIter<(PhaseAverager, Option<MeanPressure>)>> =
         stored.map(|stored| stored.state::<Vec<_>>()).transpose()?.map(Vec::into_iter);
     let mut places = Vec::new();
     for place in places::of(&setup.plan, values) {
         let taken = Taken::begin(place, fields);
-        let average = match &mut sums {
-            None => PhaseAverager::new(*taken.grid(), bins),
+        let new = || taken.has_pressure().then(|| MeanPressure::new(taken.grid().len()));
+        let (velocity, pressure) = match &mut sums {
+            None => (PhaseAverager::new(*taken.grid(), bins), new()),
             Some(sums) => sums
                 .next()
-                .filter(|sums| sums.grid() == taken.grid() && sums.bins() == &bins)
+                .filter(|(sums, _)| sums.grid() == taken.grid() && sums.bins() == &bins)
+                .filter(|(_, pressure)| pressure.is_some() == taken.has_pressure())
                 .ok_or(StudyError::OtherAverages)?,
         };
-        places.push((taken, average));
+        places.push(Averaged { taken, velocity, pressure });
     }
     let schedule = Schedule::analysed(&setup.plan, wanted.interval);
     Ok(Some(Box::new(PhaseAverages { schedule, machine: wanted.machine, places })))
@@ -116,19 +131,24 @@ impl Output for PhaseAverages {
         let time = scene.farm.time();
         let truth = machine.turbine.truth(time, scene.setup.plan.interval);
         let (rotor, helix) = azimuths(&truth);
-        for (taken, average) in &mut self.places {
-            average.add(time, rotor, Some(helix), taken.now(fields))?;
+        for place in &mut self.places {
+            let (velocity, pressure) = place.taken.now(fields);
+            place.velocity.add(time, rotor, Some(helix), velocity)?;
+            if let (Some(sums), Some(pressure)) = (&mut place.pressure, pressure) {
+                sums.add(pressure);
+            }
         }
         Ok(())
     }
 
     fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
-        section.keep(&self.places.iter().map(|(_, average)| average).collect::<Vec<_>>())
+        let sums = self.places.iter().map(|place| (&place.velocity, &place.pressure));
+        section.keep(&sums.collect::<Vec<_>>())
     }
 
     fn warnings(&self, scene: &Scene) -> Vec<Warning> {
-        let Some((_, average)) = self.places.first() else { return Vec::new() };
-        let bins = average.phase_bins();
+        let Some(place) = self.places.first() else { return Vec::new() };
+        let bins = place.velocity.phase_bins();
         let few = bins.iter().filter(|bin| bin.n_instants < FEWEST_INSTANTS).count();
         let empty = bins.iter().filter(|bin| bin.n_instants == 0).count();
         let message = format!(
@@ -143,10 +163,12 @@ impl Output for PhaseAverages {
 
     fn finish(&mut self, scene: &Scene) -> Result<(), StudyError> {
         let setting = setting(scene, self.machine);
-        for (taken, average) in &self.places {
+        for Averaged { taken, velocity, pressure } in &self.places {
             let path =
                 scene.folder.phase_averages_path(&format!("{}-{}", scene.name, taken.name()));
-            write_phase_averages(&path, &setting, &average.head(), |bin| average.bin(bin))?;
+            let mut head = velocity.head();
+            head.pressure = pressure.as_ref().map(MeanPressure::mean);
+            write_phase_averages(&path, &setting, &head, |bin| velocity.bin(bin))?;
         }
         Ok(())
     }

@@ -42,7 +42,9 @@ impl Lattice {
         let n_points = self.n_cells().map(|n| n.div_ceil(stride));
         let mut velocity: [Vec<f32>; 3] =
             std::array::from_fn(|_| Vec::with_capacity(n_points.iter().product()));
+        let mut pressure = Vec::with_capacity(n_points.iter().product());
         let unit = self.scaling().si_velocity_unit() as f32;
+        let unit_of_pressure = self.pressure_unit();
         let [row, _] = &mut *self.room();
         for z in (0..n_z).step_by(stride) {
             for y in (0..n_y).step_by(stride) {
@@ -50,6 +52,8 @@ impl Lattice {
                 for (target, column) in velocity.iter_mut().zip(&row.velocity) {
                     target.extend(column[..n_x].iter().step_by(stride).map(|value| value * unit));
                 }
+                let excess = row.density_excess[..n_x].iter().step_by(stride);
+                pressure.extend(excess.map(|excess| excess * unit_of_pressure));
             }
         }
         Volume {
@@ -58,7 +62,13 @@ impl Lattice {
             n_points,
             time: self.time(),
             velocity,
+            pressure: Some(pressure),
         }
+    }
+
+    /// Pressure over density (m²/s²) of an excess of density of one.
+    pub(super) fn pressure_unit(&self) -> f32 {
+        (self.scaling().to_si_pressure(1.0) / self.settings().air_density) as f32
     }
 
     /// Room for two rows.

@@ -125,6 +125,12 @@ impl Lattice {
 
     /// Physical velocities of eight cells, component by component, in lattice units.
     pub(super) fn cell_velocities(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 3] {
+        let [_, u, v, w] = self.cell_states(cells);
+        [u, v, w]
+    }
+
+    /// Density less one and physical velocities of eight cells, component by component, in lattice units.
+    pub(super) fn cell_states(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
         let [excess, mut u, mut v, mut w] = self.engine.read_cells(cells);
         for (corner, [x, y, z]) in cells.iter().copied().enumerate() {
             let half = 0.5 / (1.0 + excess[corner]);
@@ -140,7 +146,7 @@ impl Lattice {
             v[corner] += half * force[1];
             w[corner] += half * force[2];
         }
-        [u, v, w]
+        [excess, u, v, w]
     }
 }
 

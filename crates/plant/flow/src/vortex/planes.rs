@@ -55,7 +55,7 @@ impl FieldSource for FreeWake {
         };
         let mut velocity = std::array::from_fn(|_| vec![0.0; n_points.iter().product()]);
         self.show(&place, &mut velocity);
-        Volume { origin: first, spacing, n_points, time: self.time(), velocity }
+        Volume { origin: first, spacing, n_points, time: self.time(), velocity, pressure: None }
     }
 }
 

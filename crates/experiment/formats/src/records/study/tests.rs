@@ -23,6 +23,7 @@ fn plane(name: &str, averaged: f64) -> Plane {
         time: 1500.0,
         averaged,
         velocity: [vec![9.0, 8.0, 7.0, 6.5], vec![0.0; 4], vec![0.1; 4]],
+        pressure: None,
     }
 }
 

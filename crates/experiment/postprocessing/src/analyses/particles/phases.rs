@@ -165,6 +165,7 @@ pub(super) fn write(
         span: phases.span,
         bins: Vec::new(),
         all: moments.clone(),
+        pressure: None,
         each: Vec::new(),
     };
     let Some((angles, of_phase)) = &phases.by_angle else {

@@ -6,8 +6,8 @@ use farm::Plan;
 use flow::fields::FieldSource;
 use std::ops::Range;
 
-/// Memory of a point beside its sums (bytes): its velocity now.
-const BUFFER_BYTES: u64 = 3 * size_of::<f32>() as u64;
+/// Memory of a point beside its sums (bytes): its velocity now, and in a volume its pressure.
+const BUFFER_BYTES: u64 = 4 * size_of::<f32>() as u64;
 /// Points that lie outside of an end by less than this count as on it (distances of points).
 const ROUNDING: f64 = 1e-6;
 
@@ -103,20 +103,26 @@ pub(super) struct Taken {
     /// The whole plane as it was last; a volume is made anew each time.
     plane: Option<Plane>,
     velocity: [Vec<f32>; 3],
+    /// None of planes, and of a flow that does not know it.
+    pressure: Option<Vec<f32>>,
 }
+
+/// Velocity (m/s) and, where it is known, pressure over density (m²/s²).
+pub(super) type Now<'a> = ([&'a [f32]; 3], Option<&'a [f32]>);
 
 impl Taken {
     /// Of `place` in the flow of `fields`.
     pub(super) fn begin(place: Place, fields: &dyn FieldSource) -> Self {
-        let (whole, plane) = match place.what {
+        let (whole, plane, has_pressure) = match place.what {
             What::Plane(axes, position) => {
                 let plane = fields.plane(&place.name, axes, position);
-                (Grid::of_plane(&plane), Some(Plane { averaged: 0.0, ..plane }))
+                (Grid::of_plane(&plane), Some(Plane { averaged: 0.0, ..plane }), false)
             }
             What::Volume(stride) => {
                 let volume = fields.volume(stride);
                 let (origin, n_points) = (volume.origin.to_array(), volume.n_points);
-                (Grid { origin, spacing: [volume.spacing; 3], n_points }, None)
+                let grid = Grid { origin, spacing: [volume.spacing; 3], n_points };
+                (grid, None, volume.pressure.is_some())
             }
         };
         let firsts = std::array::from_fn(|axis| place.kept[axis].start);
@@ -126,7 +132,8 @@ impl Taken {
             ..whole
         };
         let velocity = std::array::from_fn(|_| vec![0.0; grid.len()]);
-        Self { place, grid, plane, velocity }
+        let pressure = has_pressure.then(|| vec![0.0; grid.len()]);
+        Self { place, grid, plane, velocity, pressure }
     }
 
     /// Its name.
@@ -139,41 +146,44 @@ impl Taken {
         &self.grid
     }
 
-    /// The wind of `fields` now at the points that are kept (m/s).
-    pub(super) fn now(&mut self, fields: &dyn FieldSource) -> [&[f32]; 3] {
+    /// Whether it knows the pressure.
+    pub(super) fn has_pressure(&self) -> bool {
+        self.pressure.is_some()
+    }
+
+    /// The air of `fields` now at the points that are kept.
+    pub(super) fn now(&mut self, fields: &dyn FieldSource) -> Now<'_> {
         match (&mut self.plane, self.place.what) {
             (Some(plane), _) => {
                 fields.refresh(plane);
                 let n_points = Grid::of_plane(plane).n_points;
-                cut(&self.place.kept, n_points, &plane.velocity, &mut self.velocity);
+                for (own, whole) in self.velocity.iter_mut().zip(&plane.velocity) {
+                    cut(&self.place.kept, n_points, whole, own);
+                }
             }
             (None, What::Volume(stride)) => {
                 let volume = fields.volume(stride);
-                cut(&self.place.kept, volume.n_points, &volume.velocity, &mut self.velocity);
+                let velocity = self.velocity.iter_mut().zip(&volume.velocity);
+                for (own, whole) in velocity.chain(self.pressure.iter_mut().zip(&volume.pressure)) {
+                    cut(&self.place.kept, volume.n_points, whole, own);
+                }
             }
             (None, What::Plane(..)) => {}
         }
-        self.velocity.each_ref().map(Vec::as_slice)
+        (self.velocity.each_ref().map(Vec::as_slice), self.pressure.as_deref())
     }
 }
 
 /// On return `cut` holds what of `whole`, of `n_points` along x, y, z, is `kept`.
-fn cut(
-    kept: &[Range<usize>; 3],
-    n_points: [usize; 3],
-    whole: &[Vec<f32>; 3],
-    cut: &mut [Vec<f32>; 3],
-) {
+fn cut(kept: &[Range<usize>; 3], n_points: [usize; 3], whole: &[f32], cut: &mut [f32]) {
     let [n_x, n_y, _] = n_points;
     let [along, beside, up] = kept;
-    for (cut, whole) in cut.iter_mut().zip(whole) {
-        let mut rows = cut.chunks_exact_mut(along.len());
-        for z in up.clone() {
-            for y in beside.clone() {
-                let first = n_x * (y + n_y * z);
-                if let Some(row) = rows.next() {
-                    row.copy_from_slice(&whole[first + along.start..first + along.end]);
-                }
+    let mut rows = cut.chunks_exact_mut(along.len());
+    for z in up.clone() {
+        for y in beside.clone() {
+            let first = n_x * (y + n_y * z);
+            if let Some(row) = rows.next() {
+                row.copy_from_slice(&whole[first + along.start..first + along.end]);
             }
         }
     }
@@ -187,10 +197,9 @@ mod tests {
     fn what_is_kept_is_cut_out_in_order() {
         let n_points = [4, 3, 2];
         let whole: Vec<f32> = (0..24).map(|index| index as f32).collect();
-        let whole = [whole.clone(), whole.clone(), whole];
         let kept = [1..3, 0..2, 1..2];
-        let mut found: [Vec<f32>; 3] = std::array::from_fn(|_| vec![0.0; 4]);
+        let mut found = [0.0; 4];
         cut(&kept, n_points, &whole, &mut found);
-        assert_eq!(found[2], [13.0, 14.0, 17.0, 18.0]);
+        assert_eq!(found, [13.0, 14.0, 17.0, 18.0]);
     }
 }

@@ -41,10 +41,11 @@ fn bins_and_points_are_known_before_the_run() {
     assert!((4 * 5 * 8..=5 * 5 * 8).contains(&points[3]), "{points:?}");
     let all: u64 = points.iter().sum();
     let sums = all * (169 * (4 + 72) + 12);
-    // Beside them three numbers of four bytes at each point of whole planes and of the whole volume.
+    // Beside them four numbers of four bytes at each point of whole planes and of the whole volume, and two
+    // sums of pressure, of eight bytes.
     let [n_x, n_y, n_z] = setup.plan.n_points.map(|n| n as u64);
     let whole = 2 * n_y * n_z + n_x * n_y + n_x.div_ceil(2) * n_y.div_ceil(2) * n_z.div_ceil(2);
-    assert_eq!(memory(&setup), 2 * sums + 12 * (all + whole));
+    assert_eq!(memory(&setup), 2 * (sums + 8 * all) + 16 * (all + whole));
     assert!(disk(&setup, &setup.case.runs[1], values) > 2 * sums);
 }
 

@@ -35,6 +35,7 @@ impl FieldSource for Refined {
         let mut volume = self.base().volume(stride);
         volume.time = self.time();
         let unit = self.base().scaling().si_velocity_unit() as f32;
+        let unit_of_pressure = self.base().pressure_unit();
         let stride = stride.max(1);
         let [n_x, n_y, _] = volume.n_points;
         for one in &self.grid.boxes {
@@ -44,9 +45,12 @@ impl FieldSource for Refined {
             };
             for point in points.cells() {
                 let index = (point[2] * n_y + point[1]) * n_x + point[0];
-                let velocity = self.grid.velocity(point.map(|place| place * stride));
+                let [excess, velocity @ ..] = self.grid.state(point.map(|place| place * stride));
                 for (column, value) in volume.velocity.iter_mut().zip(velocity) {
                     column[index] = unit * value;
+                }
+                if let Some(pressure) = &mut volume.pressure {
+                    pressure[index] = unit_of_pressure * excess;
                 }
             }
         }
@@ -116,17 +120,24 @@ impl Grid {
 
     /// Velocity of `cell` (cells a step), the mean over the cells in it where it is covered.
     fn velocity(&self, cell: [usize; 3]) -> [f32; 3] {
+        let [_, velocity @ ..] = self.state(cell);
+        velocity
+    }
+
+    /// Density less one and velocity of `cell`, in lattice units, which are the same in all grids: means over
+    /// the cells in it where it is covered.
+    fn state(&self, cell: [usize; 3]) -> [f32; 4] {
         match self.cover(cell) {
-            None => self.lattice.cell_velocities(&[cell; 8]).map(|component| component[0]),
+            None => self.lattice.cell_states(&[cell; 8]).map(|values| values[0]),
             Some(one) => {
                 let first: [usize; 3] =
                     std::array::from_fn(|axis| 2 * (cell[axis] - one.covered.low[axis]));
                 let children = corners(first, first.map(|place| place + 1));
                 if one.grid.boxes.is_empty() {
-                    one.grid.lattice.cell_velocities(&children).map(|values| mean(&values))
+                    one.grid.lattice.cell_states(&children).map(|values| mean(&values))
                 } else {
-                    let all = children.map(|child| one.grid.velocity(child));
-                    std::array::from_fn(|component| mean(&all.map(|child| child[component])))
+                    let all = children.map(|child| one.grid.state(child));
+                    std::array::from_fn(|part| mean(&all.map(|child| child[part])))
                 }
             }
         }
