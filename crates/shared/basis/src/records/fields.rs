@@ -140,7 +140,7 @@ pub struct PhaseAverages {
     pub bins: Vec<PhaseBin>,
     /// All instants, whatever their phase.
     pub all: Moments,
-    /// Mean pressure of all instants over density (m²/s²), but for a constant; none where it is not on record.
+    /// Mean pressure of all instants over density (m²/s²), but for a constant; none where it is not recorded.
     pub pressure: Option<Vec<f32>>,
     /// One for each bin.
     pub each: Vec<Moments>,
