@@ -18,7 +18,6 @@ fn plane(time: f64) -> Plane {
         time,
         averaged: 0.0,
         velocity: [values(8.0), values(0.0), values(-1.0)],
-        pressure: None,
     }
 }
 
@@ -59,6 +58,7 @@ fn volumes_for_paraview_come_back_as_fields() {
         n_points: [3, 2, 2],
         time,
         velocity: [0.0, 100.0, 200.0].map(|add| (0..12).map(|i| add + i as f32).collect()),
+        pressure: None,
     };
     for (index, time) in [4.0, 6.0].into_iter().enumerate() {
         let path = folder.path().join(format!("velocity-{index:04}.vti"));

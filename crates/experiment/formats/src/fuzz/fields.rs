@@ -33,7 +33,6 @@ fn fields_in_netcdf() {
         time: 1500.0,
         averaged: 0.0,
         velocity: [vec![9.0; 6], vec![0.0; 6], vec![0.1; 6]],
-        pressure: None,
     };
     let mut writer = InstantWriter::create(&path, &PlaneSetting::example(), &plane).unwrap();
     writer.write(&plane).unwrap();
@@ -53,6 +52,7 @@ fn fields_in_vtk() {
         n_points: [3, 2, 2],
         time: 4.0,
         velocity: [0.0, 100.0, 200.0].map(|add| (0..12).map(|i| add + i as f32).collect()),
+        pressure: None,
     };
     crate::vtk::write_volume(&path, &volume).unwrap();
     let text = r#"<VTKFile type="ImageData"><ImageData WholeExtent="0 1 0 0 0 0" Origin="0 0 0" Spacing="1 1 1"><DataArray Name="velocity" NumberOfComponents="3" format="ascii">1 2 3 4 5 6</DataArray>"#;

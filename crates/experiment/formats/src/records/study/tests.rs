@@ -23,7 +23,6 @@ fn plane(name: &str, averaged: f64) -> Plane {
         time: 1500.0,
         averaged,
         velocity: [vec![9.0, 8.0, 7.0, 6.5], vec![0.0; 4], vec![0.1; 4]],
-        pressure: None,
     }
 }
 
@@ -52,6 +51,7 @@ fn leave(study: &Path, run_index: usize, text: &str) -> RunFolder {
         n_points: [1, 1, 1],
         time: 5.0,
         velocity: [vec![9.0], vec![0.0], vec![0.0]],
+        pressure: None,
     };
     write_volume(&folder, 0, &volume).unwrap();
     write_summary(&folder, &summary(&manifest.run)).unwrap();
