@@ -316,7 +316,7 @@ pub(super) static OUTPUT: Table = Table {
             Holds::Whole { least: 1, most: 16 },
             "–",
             Otherwise("2 with `volume_interval`"),
-            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 24 bytes on the disk, velocity and vorticity, and 12 of memory while a volume is written; `--dry-run` tells both.",
+            "Volumes hold every so many cells along each axis: 2 an eighth of them, 1 all of the flow's resolution. A cell takes 24 bytes on the disk, velocity and vorticity, and 16 of memory while a volume is written; `--dry-run` tells both.",
         ),
         key(
             "filament_interval",

@@ -12,6 +12,8 @@ use formats::records::write_volume;
 
 /// Bytes of a file beside its points.
 const HEADER_BYTES: u64 = 1 << 10;
+/// Bytes of the pressure at a point, which the lattice gives beside velocity; it is not written.
+const PRESSURE_BYTES: u64 = size_of::<f32>() as u64;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "volumes",
@@ -25,22 +27,21 @@ fn schedule(setup: &Prepared) -> Option<Schedule> {
     setup.case.output.volume_interval.map(|interval| Schedule::analysed(&setup.plan, interval))
 }
 
-/// Bytes of the points of a volume in memory. On the disk they are twice as many: velocity and vorticity.
-fn bytes(setup: &Prepared) -> u64 {
+fn n_points(setup: &Prepared) -> u64 {
     let stride = setup.case.output.volume_stride;
-    let n_points = setup.plan.n_points.map(|n| n.div_ceil(stride) as u64);
-    n_points.iter().product::<u64>() * POINT_BYTES
+    setup.plan.n_points.map(|n| n.div_ceil(stride) as u64).iter().product()
 }
 
 /// Memory (bytes) that a run of `setup` takes while it writes a volume; none where it writes none.
 pub(crate) fn memory(setup: &Prepared) -> u64 {
     let is_kept = KIND.fed_by.admits(&setup.case) && setup.case.output.volume_interval.is_some();
-    if is_kept { bytes(setup) } else { 0 }
+    if is_kept { n_points(setup) * (POINT_BYTES + PRESSURE_BYTES) } else { 0 }
 }
 
 fn disk(setup: &Prepared, _run: &Run, _: &Values) -> u64 {
     let n_times = schedule(setup).map_or(0, |schedule| schedule.count(setup.plan.n_steps));
-    n_times * (2 * bytes(setup) + HEADER_BYTES)
+    // Velocity and vorticity.
+    n_times * (2 * n_points(setup) * POINT_BYTES + HEADER_BYTES)
 }
 
 struct Volumes {
