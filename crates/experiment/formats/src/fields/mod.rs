@@ -180,10 +180,14 @@ impl FieldFile {
     ) -> Result<(), FileError> {
         let n_values = instants.len() * points.len();
         velocity.iter_mut().for_each(|values| values.resize(n_values, 0.0));
-        match &mut self.kind {
-            Kind::NetCdf(fields) => fields.read(&self.path, instants, points, velocity)?,
-            Kind::Vti(fields) => fields.read(instants, points, velocity)?,
-            Kind::Tecplot(fields) => fields.read(instants, points, velocity)?,
+        for (step, instant) in instants.enumerate() {
+            let places = step * points.len()..(step + 1) * points.len();
+            let own = velocity.each_mut().map(|values| &mut values[places.clone()]);
+            match &mut self.kind {
+                Kind::NetCdf(fields) => fields.read(&self.path, instant, &points, own)?,
+                Kind::Vti(fields) => fields.read(instant, &points, own)?,
+                Kind::Tecplot(fields) => fields.read(instant, &points, own)?,
+            }
         }
         self.look_for_zeros(velocity);
         Ok(())

@@ -94,23 +94,18 @@ impl NetCdfFields {
         Ok((Self { reader, layouts, n_instants, advised }, grid, times, found))
     }
 
-    /// On return `velocity` is that at `instants`, one after the other, at `points`.
+    /// On return `velocity` is that at `instant` at `points`; `path` is the file's own.
     pub(super) fn read(
         &mut self,
         path: &Path,
-        instants: Range<usize>,
-        points: Range<usize>,
-        velocity: &mut [Vec<f32>; 3],
+        instant: usize,
+        points: &Range<usize>,
+        velocity: [&mut [f32]; 3],
     ) -> Result<(), FileError> {
-        let n_points = points.len();
-        for instant in instants.clone() {
-            let start = (instant - instants.start) * n_points;
-            for (component, values) in velocity.iter_mut().enumerate() {
-                self.advise(3 * instant + component, &points);
-                let own = &mut values[start..start + n_points];
-                let read = self.read_component(component, instant, points.clone(), own);
-                read.map_err(|error| refusal(path, error))?;
-            }
+        for (component, values) in velocity.into_iter().enumerate() {
+            self.advise(3 * instant + component, points);
+            let read = self.read_component(component, instant, points.clone(), values);
+            read.map_err(|error| refusal(path, error))?;
         }
         Ok(())
     }

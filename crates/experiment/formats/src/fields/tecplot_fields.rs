@@ -60,26 +60,11 @@ impl TecplotFields {
         self.times.clone()
     }
 
-    /// On return `velocity` is that of the zones `instants`, one after the other, at `points`.
+    /// On return `velocity` is that of zone number `index` at `points`.
     pub(super) fn read(
         &mut self,
-        instants: Range<usize>,
-        points: Range<usize>,
-        velocity: &mut [Vec<f32>; 3],
-    ) -> Result<(), FileError> {
-        for instant in instants.clone() {
-            let start = (instant - instants.start) * points.len();
-            let own = velocity.each_mut().map(|values| &mut values[start..start + points.len()]);
-            self.read_zone(instant, points.clone(), own)?;
-        }
-        Ok(())
-    }
-
-    /// On return `velocity` is that of zone number `index` at `points`.
-    fn read_zone(
-        &mut self,
         index: usize,
-        points: Range<usize>,
+        points: &Range<usize>,
         velocity: [&mut [f32]; 3],
     ) -> Result<(), FileError> {
         if self.reader.is_none() || self.n_read > index {

@@ -92,6 +92,10 @@ fn volumes_for_paraview_come_back_as_fields() {
         let error = read.unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("text.vti"), "{error}");
     }
+    // No room is asked for points that the file cannot hold.
+    fs::write(&path, text.replace("0 1 0", "0 99999999999 0")).unwrap();
+    let error = FieldFile::open(&path, Lengths::Metres).err().unwrap().to_string();
+    assert!(error.contains("fewer numbers than its extent says"), "{error}");
 }
 
 const HEAD: &str =

@@ -69,22 +69,17 @@ impl VtiFields {
         self.places.iter().all(Option::is_some)
     }
 
-    /// On return `velocity` is that at `instants`, one after the other, at `points`.
+    /// On return `velocity` is that at `instant` at `points`.
     pub(super) fn read(
         &mut self,
-        instants: Range<usize>,
-        points: Range<usize>,
-        velocity: &mut [Vec<f32>; 3],
+        instant: usize,
+        points: &Range<usize>,
+        velocity: [&mut [f32]; 3],
     ) -> Result<(), FileError> {
-        for instant in instants.clone() {
-            let start = (instant - instants.start) * points.len();
-            let own = velocity.each_mut().map(|values| &mut values[start..start + points.len()]);
-            match self.places[instant] {
-                Some(_) => self.read_raw(instant, &points, own)?,
-                None => self.read_whole(instant, &points, own)?,
-            }
+        match self.places[instant] {
+            Some(_) => self.read_raw(instant, points, velocity),
+            None => self.read_whole(instant, points, velocity),
         }
-        Ok(())
     }
 
     /// The raw numbers of file number `index` at `points`, whose head was read.
@@ -180,9 +175,11 @@ fn head(path: &Path) -> Result<(Grid, Option<f64>, Option<Place>), FileError> {
         Ok(text) => text,
         Err(error) => std::str::from_utf8(&text[..error.valid_up_to()]).unwrap_or_default(),
     };
-    let (grid, time) =
-        head_of(text).map_err(|problem| FileError::content(WHAT, path, problem, FIX))?;
-    // What is wrong with numbers is told when they are read.
+    let refused = |problem| FileError::content(WHAT, path, problem, FIX);
+    let (grid, time) = head_of(text).map_err(refused)?;
+    // Room is made for the points before the numbers are read.
+    n_values_of(&grid, usize::try_from(length).unwrap_or(usize::MAX)).map_err(refused)?;
+    // What else is wrong with numbers is told when they are read.
     Ok((grid, time, place_of(text, &bytes[text.len()..], length)))
 }
 
