@@ -13,8 +13,8 @@ use std::path::Path;
 
 /// Share of a step by which the end of a range may miss its last level (–).
 const MISSED: f64 = 1e-6;
-/// Most levels of a range (–).
-const MOST: f64 = 1e6;
+/// Most levels of a range (–): each is a run of its own and more, so that more of them are a slip.
+const MOST: f64 = 1e4;
 
 /// What is varied, as it is read.
 pub(super) struct Levels<'a> {
@@ -128,8 +128,9 @@ impl<'a> Levels<'a> {
             _ => None,
         };
         if found.is_none() {
-            let message =
-                format!("`{key}` must have a list of levels, or a range that its steps fill");
+            let message = format!(
+                "`{key}` must have a list of levels, or a range that its steps fill, of {MOST} levels at most"
+            );
             let fix = "write [8, 10], or { from = 6, to = 12, step = 2 }";
             object(self.findings, node.span.clone(), message, "no levels", fix);
         }
@@ -233,7 +234,7 @@ fn range(entries: &[Entry]) -> Option<Values> {
     let [(from, a), (to, b), (step, c)] = [number("from")?, number("to")?, number("step")?];
     let n = ((to - from) / step).round();
     let misses = (from + n * step - to).abs() > MISSED * step.abs();
-    if !(0.0..MOST).contains(&n) || misses {
+    if !(0.0..=MOST - 1.0).contains(&n) || misses {
         return None;
     }
     let value = |index: u64| {
