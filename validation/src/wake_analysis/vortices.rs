@@ -226,7 +226,7 @@ fn leapfrogging() -> Vec<Row> {
         .map(|(one, azimuth)| (one.place / set_place(*azimuth) - 1.0).abs());
     let greatest = worst(off);
     let places: Vec<f64> = found.iter().map(|one| one.place / DIAMETER).collect();
-    let fit = sine_fit(&azimuths, &places).ok();
+    let fit = sine_fit(&azimuths, &places, 0.0).ok();
     let of = |part: fn(&analysis::vortices::SineFit) -> f64| fit.as_ref().map_or(f64::NAN, part);
     let what = "pairs that leapfrog over a helix of 204 bins";
     let row = |text: &str, measured, expected, tolerance, unit| Row {

@@ -26,6 +26,8 @@ pub enum Pairs {
         /// The blade whose vortex is the first of a pair, from 0, in the order in which vortices come after
         /// the first step (–).
         first: usize,
+        /// How many vortices later the one came that passes (–): the next when 1.
+        later: usize,
     },
 }
 
@@ -40,8 +42,8 @@ pub struct Leapfrog {
     pub step: f64,
 }
 
-/// Where of each pair of `tracks` that were born in the plane, one after the other and of one sign, the
-/// second first gets as far along the first axis as the first: when the pair has turned by 90°.
+/// Where of each pair of `tracks` that were born in the plane and are of one sign the one that came later
+/// first gets as far along the first axis as the other: when the pair has turned by 90°.
 ///
 /// Linear between frames. Source: van der Hoek et al. (2024), §3.4, after Lignarolo et al. (2015), J. Fluid
 /// Mech. 781.
@@ -52,19 +54,19 @@ pub fn leapfrogs(tracks: &[Track], pairs: Pairs) -> Vec<Leapfrog> {
         Pairs::All => born.each_ref().map(|side| vec![None; side.len()]),
         Pairs::Of { blades, .. } => numbers(&born, &blades),
     };
-    for (born, numbers) in born.iter().zip(numbers) {
-        for (pair, number) in born.windows(2).zip(numbers.windows(2)) {
-            let counts = match (pairs, number) {
-                (Pairs::All, _) => true,
-                (Pairs::Of { blades, first }, [Some(a), Some(b)]) => {
-                    // A vortex that was missed breaks the pair.
-                    blades.of(*a) == first && *b == a + 1
-                }
-                _ => false,
+    for (born, numbers) in born.iter().zip(&numbers) {
+        for (place, track) in born.iter().enumerate() {
+            let partner = match pairs {
+                Pairs::All => born.get(place + 1),
+                Pairs::Of { blades, first, later } => numbers[place]
+                    .filter(|number| blades.of(*number) == first)
+                    // A vortex that was missed breaks its pairs alone.
+                    .and_then(|number| {
+                        numbers.iter().position(|other| *other == Some(number + later as i64))
+                    })
+                    .map(|place| &born[place]),
             };
-            if counts {
-                found.extend(passing(pair[0], pair[1]));
-            }
+            found.extend(partner.and_then(|partner| passing(track, partner)));
         }
     }
     found

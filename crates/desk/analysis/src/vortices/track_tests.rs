@@ -43,7 +43,7 @@ fn each_pair_leapfrogs_where_it_does() {
     assert_eq!(born.len(), 20);
     // Vortices pass this line 3 steps after the first one, so that none stands at the edge of the count.
     let blades = Blades { n: 2, per_revolution: 20, line: 0.15 };
-    let pairs = |first| Pairs::Of { blades, first };
+    let pairs = |first| Pairs::Of { blades, first, later: 1 };
     let found = leapfrogs(&tracks, pairs(0));
     assert!(found.len() >= 7, "{}", found.len());
     for (pair, leapfrog) in found.iter().enumerate() {
@@ -52,6 +52,8 @@ fn each_pair_leapfrogs_where_it_does() {
     }
     // The second of a pair never passes the first of the next one.
     assert!(leapfrogs(&tracks, pairs(1)).is_empty());
+    // Nor does the first of a pair pass that of the pair before.
+    assert!(leapfrogs(&tracks, Pairs::Of { blades, first: 0, later: 2 }).is_empty());
     let of_blades = blades_of(&tracks, &blades);
     assert!(of_blades.iter().all(|(id, blade)| id % 2 == *blade), "{of_blades:?}");
     // Without one vortex its pair is gone, and all others are found as before.
@@ -98,18 +100,25 @@ fn a_cycle_has_no_end() {
 fn a_sine_comes_back_with_an_interval_that_holds_it() {
     let angles: Vec<f64> = (0..24).map(|i| TAU * f64::from(i) / 24.0).collect();
     let exact: Vec<f64> = angles.iter().map(|a| 1.6 + 0.3 * (a + 0.7).sin()).collect();
-    let found = sine_fit(&angles, &exact).unwrap();
+    let found = sine_fit(&angles, &exact, 0.0).unwrap();
     assert!((found.mean - 1.6).abs() < 1e-12 && (found.amplitude - 0.3).abs() < 1e-12);
     assert!((found.phase - 0.7).abs() < 1e-12 && found.half_widths[0] < 1e-12);
     // What is left has a standard deviation of 0.05 √(24/21): the interval is t s √(1/24).
     let noisy: Vec<f64> =
         exact.iter().enumerate().map(|(i, v)| v + if i % 2 == 0 { 0.05 } else { -0.05 }).collect();
-    let found = sine_fit(&angles, &noisy).unwrap();
+    let found = sine_fit(&angles, &noisy, 0.0).unwrap();
     let expected = 2.0796 * 0.05 * (24.0_f64 / 21.0).sqrt() / 24.0_f64.sqrt();
     assert!((found.half_widths[0] / expected - 1.0).abs() < 1e-3);
     assert!((found.half_widths[1] / (expected * 2.0_f64.sqrt()) - 1.0).abs() < 1e-3);
-    assert!(sine_fit(&angles[..3], &exact[..3]).is_err());
-    assert!(sine_fit(&[0.0; 6], &[1.0; 6]).is_err());
+    // Of values that are there twice with all they share, the interval is that of one of each.
+    let twice = |values: &[f64]| [values, values].concat();
+    let doubled = sine_fit(&twice(&angles), &twice(&noisy), 1e-6).unwrap();
+    assert_eq!(doubled.n, 48);
+    for (own, other) in doubled.half_widths.iter().zip(found.half_widths) {
+        assert!((own / other - 1.0).abs() < 1e-9, "{own} {other}");
+    }
+    assert!(sine_fit(&angles[..3], &exact[..3], 0.0).is_err());
+    assert!(sine_fit(&[0.0; 6], &[1.0; 6], 0.0).is_err());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod answer;
 mod cut;
 pub(crate) mod figures;
+mod following;
 pub(crate) mod surfaces;
 
 use super::{Analysis, AnalysisSetting, Answer, FIGURES, Of, Request, Takes, drawn};
@@ -12,14 +13,10 @@ use crate::wake_fields::settings::{
     WIDTH, WIND_SPEED, ZEROS,
 };
 use crate::wake_fields::{Averaged, Wanted};
-use analysis::vortices::{
-    Blades, Leapfrog, Pairs, Search, Section, SineFit, Track, Tracking, Vortex, blades_of, follow,
-    leapfrogs, sine_fit, vortices,
-};
-use basis::angle::{wrap_to_half_turn, wrap_to_turn};
+use analysis::vortices::{Search, Section, Track, Vortex, vortices};
 use cut::Cut;
+use following::{Fitted, Passed, follow_all};
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// The analysis.
 pub(super) const ANALYSIS: Analysis = Analysis {
@@ -72,14 +69,10 @@ const LEVEL: AnalysisSetting = settings::setting(
     Takes::Number,
     "Value on the isosurfaces, times squared diameter over squared free stream; a twentieth of the greatest when left out",
 );
-/// Nearest that two vortices of one sense may be, and how far one may be from where it is expected (rotor
-/// diameters).
+/// Nearest that two vortices of one sense may be (rotor diameters).
 const SEPARATION: f64 = 0.06;
-const GATE: f64 = 0.08;
 /// Distance downwind of the rotor from which on vortices are sought (rotor diameters).
 const BEYOND: f64 = 0.1;
-/// Length in which vortices are taken as new (rotor diameters).
-const BIRTH: f64 = 0.15;
 /// Greatest misfit of a vortex (–).
 const MOST_MISFIT: f64 = 0.5;
 /// Least distance from the hub at which a vortex comes from a tip, not from a root (rotor diameters).
@@ -87,8 +80,6 @@ const TIP: f64 = 0.25;
 /// That vortices are not followed, and why.
 const NOT_FOLLOWED: &str =
     "vortices are not followed: the rotor's frequency is not known (--rotor-hz)";
-/// Revolutions for which a vortex is followed at least (–).
-const REVOLUTIONS: f64 = 8.0;
 
 /// What was found in the bins.
 pub(crate) struct Found {
@@ -102,30 +93,13 @@ pub(crate) struct Found {
     blades: Vec<(usize, usize)>,
     /// Of all pairs.
     leapfrogs: Vec<Passed>,
+    /// Where the vortex after next passes that of each blade, where blades are told.
+    later: Vec<Passed>,
     fits: Vec<Fitted>,
     /// The pair that counts, from 1, where blades are told.
     pair: Option<usize>,
     /// What must be said.
     remarks: Vec<String>,
-}
-
-/// A vortex that passed another.
-struct Passed {
-    /// Which pair of the revolution, from 1, where blades are told.
-    pair: Option<usize>,
-    /// Side of the hub: the name of the side to which the plane's second axis points, or of the other.
-    side: &'static str,
-    /// Azimuth of the helix (rad), where there is a helix.
-    azimuth: Option<f64>,
-    one: Leapfrog,
-}
-
-/// The sine through the places of a pair on one side of the hub over the azimuth of the helix, which meets
-/// the sides half a turn apart.
-struct Fitted {
-    pair: Option<usize>,
-    side: &'static str,
-    sine: SineFit,
 }
 
 impl Found {
@@ -161,6 +135,7 @@ impl Found {
             tracks: Vec::new(),
             blades: Vec::new(),
             leapfrogs: Vec::new(),
+            later: Vec::new(),
             fits: Vec::new(),
             pair: None,
             remarks: averaged.remarks.clone(),
@@ -279,96 +254,4 @@ fn rotor_frequency(
         return settings::positive(request, &ROTOR_HZ, 1.0).map(Some);
     }
     Ok(averaged.rates.map(|(rotor, _)| rotor))
-}
-
-/// Names of the sides of the hub along the plane's second axis, that to which it points first.
-fn sides(found: &Found) -> [&'static str; 2] {
-    match found.cut.grid.spanned()[1] {
-        1 => ["left", "right"],
-        _ => ["above", "below"],
-    }
-}
-
-/// The side on which track number `id` was seen first.
-fn side(found: &Found, id: usize) -> &'static str {
-    let [ahead, behind] = sides(found);
-    let hub = found.averaged.setting.hub[found.cut.grid.spanned()[1]];
-    let track = found.tracks.iter().find(|track| track.id == id);
-    let is_ahead = track.is_none_or(|track| track.sightings[0].vortex.position[1] >= hub);
-    if is_ahead { ahead } else { behind }
-}
-
-/// The tracks of vortices of the blades' tips: those of roots come at the same times, and would be taken for
-/// their neighbours.
-fn tips(found: &Found) -> Vec<Track> {
-    let is_tip = |track: &&Track| {
-        is_of_a_tip(&found.averaged, &found.cut, track.sightings[0].vortex.position)
-    };
-    found.tracks.iter().filter(is_tip).cloned().collect()
-}
-
-fn follow_all(
-    request: &Request,
-    found: &mut Found,
-    frequency: f64,
-) -> Result<(), PostprocessingError> {
-    let setting = &found.averaged.setting;
-    let in_turn = TAU / found.averaged.head.rotor_width;
-    let start = found.search(found.least).within[0][0];
-    let rounds = (REVOLUTIONS * in_turn / found.frames.len() as f64).ceil() as usize + 1;
-    let birth = start + BIRTH * setting.diameter + found.cut.grid.spacing[0];
-    let tracking = Tracking {
-        interval: 1.0 / (frequency * in_turn),
-        gate: GATE * setting.diameter,
-        n_rounds: if found.frames.len() > 1 { rounds } else { 1 },
-        birth,
-        most_missed: 1,
-    };
-    found.tracks = follow(&found.frames, &tracking);
-    let tips = tips(found);
-    if request.text(BLADES.name).is_none() {
-        take(found, &tips, None, Pairs::All);
-        return Ok(());
-    }
-    let n = settings::whole(request, &BLADES, 1, 3)?;
-    let pair = settings::whole(request, &PAIR, 1, 1)?;
-    if pair > n {
-        return Err(PostprocessingError::Setting {
-            setting: PAIR.name,
-            given: pair.to_string(),
-            expected: "a number up to that of the blades is expected",
-            fix: "write such as 1",
-        });
-    }
-    let blades = Blades { n, per_revolution: in_turn.round() as usize, line: birth };
-    found.blades = blades_of(&tips, &blades);
-    found.pair = Some(pair);
-    for pair in 1..=n {
-        take(found, &tips, Some(pair), Pairs::Of { blades, first: pair - 1 });
-    }
-    Ok(())
-}
-
-/// Takes in where `pairs` of the tracks `tips` leapfrog, which are pair number `pair` of a revolution.
-fn take(found: &mut Found, tips: &[Track], pair: Option<usize>, pairs: Pairs) {
-    let (n, hub) = (found.frames.len(), found.averaged.setting.hub[0]);
-    let mut taken = Vec::new();
-    for one in leapfrogs(tips, pairs) {
-        let [bin, next] =
-            [0, 1].map(|ahead| &found.averaged.head.bins[(one.step as usize + ahead) % n]);
-        // The helix goes on between bins, by as much as from this one to the next.
-        let azimuth = bin
-            .helix
-            .zip(next.helix)
-            .map(|(a, b)| wrap_to_turn(a + one.step.fract() * wrap_to_half_turn(b - a)));
-        taken.push(Passed { pair, side: side(found, one.ids[0]), azimuth, one });
-    }
-    for side in sides(found) {
-        let of_side = taken.iter().filter(|passed| passed.side == side);
-        let (angles, places): (Vec<f64>, Vec<f64>) =
-            of_side.filter_map(|passed| Some((passed.azimuth?, passed.one.place - hub))).unzip();
-        // Too few, or all at one azimuth: no sine.
-        found.fits.extend(sine_fit(&angles, &places).ok().map(|sine| Fitted { pair, side, sine }));
-    }
-    found.leapfrogs.extend(taken);
 }

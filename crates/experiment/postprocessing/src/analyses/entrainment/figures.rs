@@ -54,7 +54,7 @@ pub(crate) fn phase_panel(
 ) -> Option<CurvePanel> {
     let at = disc.by_phase.iter().filter_map(|one| Some((one.helix?, one.fraction)));
     let (angles, values): (Vec<f64>, Vec<f64>) = at.unzip();
-    let fit = sine_fit(&angles, &values).ok()?;
+    let fit = sine_fit(&angles, &values, 0.0).ok()?;
     let curve = (0..=360).step_by(5).map(|degrees| {
         let at = f64::from(degrees);
         let mean = fit.mean + fit.amplitude * (at.to_radians() + fit.phase).sin();

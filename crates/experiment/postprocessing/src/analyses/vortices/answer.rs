@@ -1,6 +1,7 @@
 //! What was found of vortices in words and in numbers.
 
-use super::{Fitted, Found, Passed, tips};
+use super::Found;
+use super::following::{Fitted, Passed, tips};
 use crate::analyses::phases::setting_json;
 use crate::wake_fields::conditions;
 use analysis::vortices::{Track, Vortex};
@@ -58,12 +59,33 @@ pub(super) fn text(found: &Found, width: usize) -> String {
     if !found.is_along() {
         text += &hub_text(found);
     }
-    if found.counted().next().is_some() {
-        let n = found.counted().count() as f64;
-        let places = || found.counted().map(|passed| over(passed.one.place));
+    text += &leapfrog_text(found);
+    text + "leapfrog: where a vortex first gets as far downwind as the one before it; core: radius of the greatest speed\n"
+}
+
+/// Where the pair that counts leapfrogs, in words.
+fn leapfrog_text(found: &Found) -> String {
+    let setting = &found.averaged.setting;
+    let mut text = String::new();
+    let spread = |passed: &[&Passed]| {
+        let n = passed.len() as f64;
+        let places =
+            || passed.iter().map(|passed| (passed.one.place - setting.hub[0]) / setting.diameter);
         let mean = places().sum::<f64>() / n;
         let deviation = (places().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt();
-        text += &format!("{n} leapfrogs, at {mean:.3} ± {deviation:.3} D (standard deviation)\n");
+        format!("{mean:.3} ± {deviation:.3} D (standard deviation)")
+    };
+    let counted: Vec<&Passed> = found.counted().collect();
+    if !counted.is_empty() {
+        text += &format!("{} leapfrogs, at {}\n", counted.len(), spread(&counted));
+    }
+    let later: Vec<&Passed> = found.later.iter().filter(|one| one.pair == found.pair).collect();
+    if !later.is_empty() {
+        let n = later.len();
+        text += &format!(
+            "{n} times the vortex after next passes the first of the pair too, at {}\n",
+            spread(&later)
+        );
     }
     for Fitted { side, sine: fit, .. } in found.sines() {
         let [mean, amplitude, phase] = fit.half_widths;
@@ -77,7 +99,7 @@ pub(super) fn text(found: &Found, width: usize) -> String {
             phase.to_degrees()
         );
     }
-    text + "leapfrog: where a vortex first gets as far downwind as the one before it; core: radius of the greatest speed\n"
+    text
 }
 
 /// How far tip vortices are followed, and where they have lost half of their strength, in words.
@@ -167,7 +189,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "sightings": sightings.collect::<Vec<_>>(),
         })
     });
-    let leapfrogs = found.leapfrogs.iter().map(|Passed { pair, side, azimuth, one }| {
+    let passed = |Passed { pair, side, azimuth, one }: &Passed| {
         json!({
             "pair": pair,
             "side": side,
@@ -176,7 +198,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "step": one.step,
             "helix_azimuth_deg": azimuth.map(f64::to_degrees),
         })
-    });
+    };
     let fits = found.fits.iter().map(|Fitted { pair, side, sine: fit }| {
         json!({
             "pair": pair,
@@ -195,7 +217,8 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
         "least_vorticity_1_s": found.least,
         "peaks_without_a_vortex": found.n_lost,
         "tracks": tracks.collect::<Vec<_>>(),
-        "leapfrogs": leapfrogs.collect::<Vec<_>>(),
+        "leapfrogs": found.leapfrogs.iter().map(passed).collect::<Vec<_>>(),
+        "leapfrogs_of_the_vortex_after_next": found.later.iter().map(passed).collect::<Vec<_>>(),
         "leapfrog_sines": fits.collect::<Vec<_>>(),
         "hub_vortex": hub.iter().map(|one| one.as_ref().map(vortex)).collect::<Vec<_>>(),
     })
