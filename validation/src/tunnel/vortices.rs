@@ -29,6 +29,7 @@ struct Found {
     setting: Setting,
     tracks: Vec<Track>,
     leapfrogs: Vec<Leapfrog>,
+    leapfrogs_of_the_vortex_after_next: Vec<Leapfrog>,
     leapfrog_sines: Vec<Sine>,
 }
 
@@ -80,41 +81,42 @@ fn found(folder: &Path, run: &str) -> Result<Found, String> {
     serde_json::from_value(answer.json).map_err(|error| error.to_string())
 }
 
+/// Mean of `values`, not a number where there are none.
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 impl Found {
     /// `x` (m) in diameters behind the hub.
     fn behind(&self, x: f64) -> f64 {
         (x - self.setting.hub_m[0]) / self.setting.diameter_m
     }
 
-    /// Where `pair` leapfrogs (D), the mean of the places on `side` of the hub, if it does.
-    fn place(&self, pair: usize, side: &str) -> Option<f64> {
-        let of_pair = self.leapfrogs.iter().filter(|one| one.pair == pair && one.side == side);
-        let places: Vec<f64> = of_pair.map(|one| self.behind(one.x_m)).collect();
-        if places.is_empty() {
-            return None;
-        }
-        let mean = places.iter().sum::<f64>() / places.len() as f64;
-        tell!("{side}: pair {pair} leapfrogs at {mean:.2} D, mean of {}", places.len());
-        Some(mean)
+    /// Where vortices of `pair` pass each other (D), by the `passages` of all pairs: the mean of the sides of
+    /// the hub on which they do, each the mean of its places; not a number where they never do.
+    fn place(&self, pair: usize, passages: &[Leapfrog], which: &str) -> f64 {
+        let on_side = |side: &str| {
+            let of_pair = passages.iter().filter(|one| one.pair == pair && one.side == side);
+            let places: Vec<f64> = of_pair.map(|one| self.behind(one.x_m)).collect();
+            let place = mean(&places);
+            tell!("{side}: {which} of pair {pair} at {place:.2} D, mean of {}", places.len());
+            (!places.is_empty()).then_some(place)
+        };
+        mean(&["above", "below"].into_iter().filter_map(on_side).collect::<Vec<f64>>())
     }
 
-    /// The place at which each pair leapfrogs, the mean of the sides on which it does (D), the nearest first,
-    /// with the pair's number from 1.
-    fn places(&self) -> Vec<(usize, f64)> {
-        let place = |pair: usize| {
-            let on_side = |side| self.place(pair, side);
-            let places: Vec<f64> = ["above", "below"].into_iter().filter_map(on_side).collect();
-            (!places.is_empty()).then(|| (pair, places.iter().sum::<f64>() / places.len() as f64))
-        };
-        let mut places: Vec<(usize, f64)> = (1..=N_BLADES).filter_map(place).collect();
-        places.sort_by(|a, b| a.1.total_cmp(&b.1));
-        places
+    /// The pair that leapfrogs nearest to the rotor, from 1, and where it does (D).
+    fn first_pair(&self) -> (usize, f64) {
+        let places =
+            (1..=N_BLADES).map(|pair| (pair, self.place(pair, &self.leapfrogs, "the leapfrog")));
+        let found = places.filter(|(_, place)| place.is_finite());
+        found.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((1, f64::NAN))
     }
 
     /// Mean place and amplitude of the sine through the places of `pair` over the azimuth of the helix, each
-    /// the mean of both sides (D). The mean of the places themselves would weigh azimuths by how often
-    /// vortices happen to be followed there.
-    fn sine(&self, pair: usize) -> [f64; 2] {
+    /// the mean of both sides (D) with half of its 95 % interval, sides taken as independent. The mean of the
+    /// places themselves would weigh azimuths by how often vortices happen to be followed there.
+    fn sine(&self, pair: usize) -> [[f64; 2]; 2] {
         let sines: Vec<&Sine> = self.leapfrog_sines.iter().filter(|one| one.pair == pair).collect();
         let over = |length: f64| length / self.setting.diameter_m;
         for sine in &sines {
@@ -126,10 +128,12 @@ impl Found {
                 sine.n
             );
         }
-        let mean = |of: fn(&Sine) -> f64| {
-            over(sines.iter().map(|sine| of(sine)).sum::<f64>() / sines.len() as f64)
-        };
-        [mean(|sine| sine.mean_m), mean(|sine| sine.amplitude_m)]
+        [0, 1].map(|k| {
+            let values: Vec<f64> =
+                sines.iter().map(|sine| over([sine.mean_m, sine.amplitude_m][k])).collect();
+            let squares = sines.iter().map(|sine| over(sine.half_widths_95[k]).powi(2));
+            [mean(&values), squares.sum::<f64>().sqrt() / sines.len() as f64]
+        })
     }
 
     /// The first place of all (D).
@@ -145,7 +149,7 @@ impl Found {
             .filter(|one| self.behind(one.vortex.position_m[0]) <= EARLY)
             .map(|one| one.vortex.peak_vorticity_1_s.abs())
             .collect();
-        early.iter().sum::<f64>() / early.len() as f64
+        mean(&early)
     }
 
     /// Mean strength of all blades' vortices soon behind the rotor (1/s), and the weakest's over the mean of
@@ -153,9 +157,7 @@ impl Found {
     fn strengths(&self) -> (f64, f64) {
         let mut of_blades: Vec<f64> = (1..=N_BLADES).map(|blade| self.strength(blade)).collect();
         of_blades.sort_by(f64::total_cmp);
-        let mean = of_blades.iter().sum::<f64>() / N_BLADES as f64;
-        let others = of_blades[1..].iter().sum::<f64>() / (N_BLADES - 1) as f64;
-        (mean, of_blades[0] / others)
+        (mean(&of_blades), of_blades[0] / mean(&of_blades[1..]))
     }
 }
 
@@ -174,36 +176,40 @@ pub(super) fn rows(folder: &Path) -> Vec<Row> {
     rows
 }
 
-/// Power left at the place of the second turbine, over that of the baseline.
+/// Power left at the place of the second turbine, over that of the baseline, and where the helices cross.
 fn left(folder: &Path) -> Result<Vec<Row>, String> {
-    let at = |run: &str| {
-        let path = RunFolder::new(folder, run).phase_averages_path("discs-5D");
+    let at = |run: &str, distance: f64| {
+        let path = RunFolder::new(folder, run).phase_averages_path(&format!("discs-{distance}D"));
         let plane = StoredPhaseAverages::open(&path).map_err(|error| error.to_string())?;
         let [mean, spread] = of_disc(&plane)?;
-        tell!("{run}: fraction of available power at 5 D {mean:.3} ± {spread:.3} over the phases");
+        tell!(
+            "{run}: fraction of available power at {distance} D {mean:.3} ± {spread:.3} over the phases"
+        );
         Ok::<f64, String>(mean)
     };
-    let baseline = at("baseline")?;
-    let row = |run: &str| {
-        Ok(Row {
-            what: format!(
-                "fraction of available power at 5 D, no turbine there, {run} over baseline"
-            ),
-            measured: at(run)? / baseline,
-            expected: 1.0,
-            tolerance: AtLeast,
-            unit: "–",
-            source: FURTHER,
-        })
+    let row = |what: String, (run, over): (&str, &str), distance: f64, source| {
+        let measured = at(run, distance)? / at(over, distance)?;
+        Ok(Row { what, measured, expected: 1.0, tolerance: AtLeast, unit: "–", source })
     };
-    ["cw", "ccw"].into_iter().map(row).collect()
+    let what = |run: &str, over: &str, distance: f64| {
+        format!("fraction of available power at {distance} D, no turbine there, {run} over {over}")
+    };
+    [
+        ("cw", "ccw", 4.0, TUNNEL),
+        ("cw", "baseline", 5.0, FURTHER),
+        ("ccw", "baseline", 5.0, FURTHER),
+    ]
+    .into_iter()
+    .map(|(run, over, distance, source)| {
+        row(what(run, over, distance), (run, over), distance, source)
+    })
+    .collect()
 }
 
 fn of_runs([baseline, cw, ccw]: &[Found; 3]) -> Vec<Row> {
     // Each pair of the baseline meets one phase: it leapfrogs once in each revolution, at one place.
-    let places = baseline.places();
-    let mut rows = of_baseline(baseline, &places);
-    let first = places.first().copied().unwrap_or((1, f64::NAN));
+    let first = baseline.first_pair();
+    let mut rows = of_baseline(baseline, first);
     rows.extend(of_helices(baseline, first, [cw, ccw]));
     rows
 }
@@ -217,18 +223,18 @@ fn row(
     Row { what: what.to_owned(), measured, expected, tolerance, unit, source: TUNNEL }
 }
 
-fn of_baseline(baseline: &Found, places: &[(usize, f64)]) -> Vec<Row> {
-    let place = |number: usize| places.get(number).map_or(f64::NAN, |(_, place)| *place);
+fn of_baseline(baseline: &Found, (first, place): (usize, f64)) -> Vec<Row> {
+    let later = &baseline.leapfrogs_of_the_vortex_after_next;
     vec![
         row(
             "place where the first pair leapfrogs, baseline, to which a blade's mounting is fitted",
-            place(0),
+            place,
             (1.75, Within(PLACE_TOLERANCE)),
             "D",
         ),
         row(
-            "place where the second pair leapfrogs, baseline",
-            place(1),
+            "place where the third vortex passes the first of that pair, baseline",
+            baseline.place(first, later, "the third vortex's passage"),
             (3.0, Within(PLACE_TOLERANCE)),
             "D",
         ),
@@ -246,10 +252,12 @@ fn of_helices(baseline: &Found, (first, place): (usize, f64), [cw, ccw]: [&Found
     let strength = baseline.strengths().0;
     let sines = [cw.sine(first), ccw.sine(first)];
     let mut rows = Vec::new();
-    for ((name, run), [mean, _]) in [("cw", cw), ("ccw", ccw)].into_iter().zip(sines) {
+    for ((name, run), [[mean, half], _]) in [("cw", cw), ("ccw", ccw)].into_iter().zip(sines) {
         rows.push(row(
-            &format!("mean of the sine through places where that first pair leapfrogs, {name} over baseline"),
-            ratio(mean, place),
+            &format!(
+                "mean of the sine through places where that first pair leapfrogs, {name} over baseline, upper end of its 95 % interval"
+            ),
+            ratio(mean + half, place),
             (1.0, AtMost),
             "–",
         ));
@@ -266,11 +274,12 @@ fn of_helices(baseline: &Found, (first, place): (usize, f64), [cw, ccw]: [&Found
         (1.5, AtMost),
         "D",
     ));
+    let [[_, [of_cw, half_cw]], [_, [of_ccw, half_ccw]]] = sines;
     rows.push(row(
-        "amplitude of that sine over the azimuth of the helix, cw over ccw",
-        ratio(sines[0][1], sines[1][1]),
-        (1.0, AtLeast),
-        "–",
+        "amplitude of that sine over the azimuth of the helix, cw less ccw, lower end of its 95 % interval",
+        of_cw - of_ccw - half_cw.hypot(half_ccw),
+        (0.0, AtLeast),
+        "D",
     ));
     rows
 }
