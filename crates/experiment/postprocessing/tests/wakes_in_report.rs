@@ -8,6 +8,8 @@ use analysis::phases::{Bins, PhaseAverager};
 use basis::Sense;
 use basis::records::{FieldSetting, Grid, Plane, PlaneAxes};
 use formats::records::{InstantWriter, PlacedTurbine, PlaneSetting, write_phase_averages};
+use miette::Diagnostic;
+use postprocessing::analyses::{ANALYSES, Request};
 use small::{NREL_5MW, behind_helix, case, done, options, written};
 use std::f64::consts::TAU;
 use std::fs;
@@ -151,6 +153,27 @@ fn surfaces_of_volumes_are_on_the_page() {
     let surfaces = figure(&page, "vortices-surfaces-box-volume-helix");
     let title = "Where turning outweighs straining: helix, box-volume";
     assert!(surfaces.contains(title) && surfaces.contains("Isosurfaces of Q"), "{surfaces}");
+
+    let run = output.join("helix");
+    let files = output.join("surfaces");
+    let ask = |field: &str, level: &str| {
+        let analysis = ANALYSES.iter().find(|one| one.name == "vortices").expect("it is listed");
+        let request = Request::of(&run).with("field", field).with("level", level);
+        (analysis.run)(&request.with("surfaces", &files.display().to_string()))
+    };
+    let told = |field: &str, level: &str| {
+        let error = ask(field, level).expect_err("nothing is there");
+        format!("{error}; {}", error.help().expect("a fix"))
+    };
+    // Names that would do are told; no files without triangles are written.
+    let refusal = told("box", "0.1");
+    assert!(refusal.contains("keeps nothing called `box`"), "{refusal}");
+    assert!(refusal.ends_with("with --field: box-volume"), "{refusal}");
+    let refusal = told("box-volume", "1e6");
+    assert!(refusal.contains("no place where Q is more than 1000000 (U/D)²"), "{refusal}");
+    assert!(refusal.contains("the greatest is ") && !files.exists(), "{refusal}");
+    ask("box-volume", "0.1").expect("surfaces");
+    assert!(files.join("q-000.vtp").is_file());
 }
 
 #[test]

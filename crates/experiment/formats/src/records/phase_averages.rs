@@ -2,7 +2,7 @@
 
 use super::{RunFolder, study};
 use crate::FileError;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use crate::netcdf::{
     PhaseAveragesWriter, StoredPhaseAverages, is_phase_averages, phase_averages_bytes,
@@ -23,11 +23,13 @@ impl RunFolder {
     /// # Errors
     /// [`FileError::System`].
     pub fn phase_averages_paths(&self) -> Result<Vec<PathBuf>, FileError> {
-        let is_one = |path: &PathBuf| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(AVERAGES) && name.ends_with(".nc")
-        };
+        let is_one = |path: &PathBuf| Self::phase_averages_name(path).is_some();
         Ok(study::entries(&self.path)?.into_iter().filter(is_one).collect())
+    }
+
+    /// The name of the plane or volume whose averages by phase the file at `path` holds, if it is one.
+    pub fn phase_averages_name(path: &Path) -> Option<&str> {
+        path.file_name()?.to_str()?.strip_prefix(AVERAGES)?.strip_suffix(".nc")
     }
 }
 
@@ -35,7 +37,6 @@ impl RunFolder {
 mod tests {
     use super::*;
     use basis::records::{FieldSetting, Grid, Moments, PhaseAverages, PhaseBin};
-    use std::path::Path;
 
     fn moments(start: f32, n_points: usize) -> Moments {
         let values = |add: usize| (0..n_points).map(|i| start + (add * 100 + i) as f32).collect();

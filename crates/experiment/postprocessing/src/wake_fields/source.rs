@@ -150,8 +150,12 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
         if instants.is_file() {
             return Ok(instants);
         }
-        let problem = format!("keeps no instants of a plane called `{name}`");
-        return Err(refused(path, problem, NO_INSTANTS));
+        let kept = kept_names(&folder, averages)?;
+        let fix = match kept.is_empty() {
+            true => NO_INSTANTS.to_owned(),
+            false => format!("name one that it keeps with --field: {}", kept.join(", ")),
+        };
+        return Err(refused(path, format!("keeps nothing called `{name}`"), fix));
     }
     if averages && let Some(kept) = kept_averages(&folder)? {
         return Ok(kept);
@@ -161,6 +165,28 @@ fn in_run(request: &Request, path: &Path, averages: bool) -> Result<PathBuf, Pos
         Some(file) => Ok(file),
         None => Err(refused(path, "keeps neither planes at instants nor averages", NO_INSTANTS)),
     }
+}
+
+/// What `--field` may name in `folder`, of `averages` by phase, too, where they will do.
+fn kept_names(folder: &RunFolder, averages: bool) -> Result<Vec<String>, PostprocessingError> {
+    let mut names = Vec::new();
+    if averages {
+        let paths = folder.phase_averages_paths()?;
+        let all = paths.iter().filter_map(|path| RunFolder::phase_averages_name(path));
+        names.extend(all.map(str::to_owned));
+    }
+    // Beside instants there lie means and last fields of each plane.
+    let instants = |path: &PathBuf| {
+        let name = path.file_name()?.to_str()?.strip_suffix(".nc")?;
+        let is_one = !name.ends_with("-mean") && !name.ends_with("-last");
+        is_one.then(|| name.to_owned())
+    };
+    names.extend(folder.plane_files()?.iter().filter_map(instants));
+    let volumes = std::fs::read_dir(folder.volumes_path());
+    if volumes.is_ok_and(|mut files| files.next().is_some()) {
+        names.push("volumes".to_owned());
+    }
+    Ok(names)
 }
 
 /// The averages by phase that the run in `folder` kept: of those the first that reaches along the wind, as

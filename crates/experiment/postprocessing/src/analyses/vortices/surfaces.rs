@@ -131,24 +131,38 @@ fn level(request: &Request, found: &Found, by: Criterion) -> Result<f64, Postpro
     let setting = &found.averaged.setting;
     let unit = (setting.wind_speed / setting.diameter).powi(2);
     if request.text(LEVEL.name).is_some() {
-        return Ok(settings::positive(request, &LEVEL, 1.0)? * unit);
+        let level = settings::positive(request, &LEVEL, 1.0)? * unit;
+        let most = greatest(found, by, f64::NEG_INFINITY)?;
+        if level < most {
+            return Ok(level);
+        }
+        let [name, _] = by.names();
+        let problem = format!(
+            "has no place where {name} is more than {} (U/D)²: the greatest is {:.3}",
+            level / unit,
+            most / unit
+        );
+        return Err(refused(&found.averaged.path, problem, "give a smaller value with --level"));
     }
+    let most = greatest(found, by, setting.hub[0] + BEYOND * setting.diameter)?;
+    if most > 0.0 {
+        return Ok(SHARE * most);
+    }
+    let fix = "give a value for the surfaces with --level";
+    Err(refused(&found.averaged.path, "has no place where turning outweighs straining", fix))
+}
+
+/// The greatest criterion of all bins from `x` (m) on (1/s²), at least zero.
+fn greatest(found: &Found, by: Criterion, x: f64) -> Result<f64, PostprocessingError> {
     let grid = found.averaged.grid();
     let mut greatest = 0.0_f64;
     for index in 0..found.frames.len() {
         let all = Turning::of(found, index, by)?.criterion;
-        let beyond = |place: usize| {
-            let x = grid.coordinate(0, grid.place(place)[0]);
-            x >= setting.hub[0] + BEYOND * setting.diameter
-        };
+        let beyond = |place: usize| grid.coordinate(0, grid.place(place)[0]) >= x;
         let places = (0..all.len()).filter(|place| beyond(*place) && all[*place].is_finite());
         greatest = places.fold(greatest, |most, place| most.max(all[place]));
     }
-    if greatest > 0.0 {
-        return Ok(SHARE * greatest);
-    }
-    let fix = "give a value for the surfaces with --level";
-    Err(refused(&found.averaged.path, "has no place where turning outweighs straining", fix))
+    Ok(greatest)
 }
 
 fn panel(found: &Found, index: usize, surface: Isosurface) -> SurfacePanel {
