@@ -1,10 +1,11 @@
 """Isosurfaces of Q that wakemix wrote, beside those that the Visualization Toolkit draws of the same averages by phase.
 
     python3 -m venv .venv && .venv/bin/pip install vtk netCDF4 numpy
-    wakemix analyse vortices RUN --field NAME-volume --surfaces FOLDER --level LEVEL
-    .venv/bin/python validation/scripts/isosurfaces_by_vtk.py RUN/averages-NAME-volume.nc FOLDER LEVEL_1_S2
+    wakemix run validation/cases/isosurfaces.toml -o runs/isosurfaces
+    wakemix analyse vortices runs/isosurfaces/helix --surfaces surfaces --level 0.2
+    .venv/bin/python validation/scripts/isosurfaces_by_vtk.py runs/isosurfaces/helix/averages-wake-volume.nc surfaces 0.2
 
-The file is opened by VTK's own reader. VTK makes gradients and Q of the velocities by vtkGradientFilter and its surface by
+Each file is opened by VTK's own reader. VTK makes gradients and Q of the velocities by vtkGradientFilter and its surface by
 vtkFlyingEdges3D (cubes, where wakemix cuts tetrahedra). Printed are, for some bins: triangles and area of both, the share of
 edges that do not belong to two triangles (a surface is closed but where it leaves the volume), and the distance of wakemix's
 points from VTK's surface, over the spacing: median, of 99 % of the points, greatest.
@@ -80,6 +81,7 @@ def distances(surface, other):
 
 def main(averages, folder, level):
     data = netCDF4.Dataset(averages)
+    level *= (data.wind_speed_m_s / data.rotor_diameter_m) ** 2
     files = sorted(Path(folder).glob("q-*.vtp"))
     for index in range(0, len(files), max(1, len(files) // N_BINS)):
         reader = vtk.vtkXMLPolyDataReader()
@@ -87,6 +89,9 @@ def main(averages, folder, level):
         reader.Update()
         own, image = reader.GetOutput(), image_of(data, index)
         other = surface_by_vtk(image, level)
+        if own.GetNumberOfPolys() == 0 or other.GetNumberOfPolys() == 0:
+            print(f"{files[index].name}: triangles {own.GetNumberOfPolys()} and {other.GetNumberOfPolys()}")
+            continue
         apart = distances(own, other) / image.GetSpacing()[0]
         arrays = [own.GetPointData().GetArrayName(k) for k in range(own.GetPointData().GetNumberOfArrays())]
         print(

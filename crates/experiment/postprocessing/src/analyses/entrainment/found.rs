@@ -111,13 +111,18 @@ impl Energy {
     }
 }
 
-/// What crosses the lines at the rotor's edge, or the tube around it, wherever the grid has them.
+/// What crosses the lines at the rotor's edge, or the tube around it, wherever the grid has them behind the
+/// rotor: before it there is no wake, and its flux turns anywhere about zero.
 fn fluxes(found: &Averaged, parts: &Decomposition, radius: f64) -> Vec<Through> {
     let (grid, hub) = (found.grid(), found.setting.hub);
     if grid.n_points[0] < 2 {
         return Vec::new();
     }
-    let tube = flux_through_tube(parts, grid, [hub[1], hub[2]], radius);
+    let behind = |mut points: Vec<FluxPoint>| {
+        points.retain(|point| point.x >= hub[0]);
+        points
+    };
+    let tube = behind(flux_through_tube(parts, grid, [hub[1], hub[2]], radius));
     if grid.n_points[1] > 1 && grid.n_points[2] > 1 && !tube.is_empty() {
         return vec![Through { name: "tube", points: tube }];
     }
@@ -128,7 +133,7 @@ fn fluxes(found: &Averaged, parts: &Decomposition, radius: f64) -> Vec<Through> 
         let edge = Edge { axis, place, inward: -side };
         let has_axis = grid.n_points[axis] > 1;
         let points = if has_axis { flux_along(parts, grid, &edge) } else { Vec::new() };
-        Through { name, points }
+        Through { name, points: behind(points) }
     };
     lines.into_iter().map(through).filter(|one| one.points.len() > 1).collect()
 }

@@ -62,6 +62,7 @@ pub(crate) fn velocity(found: &Found) -> Result<MapFigure, PostprocessingError> 
     let n_marked: usize = map.panels.iter().map(|panel| panel.points.len()).sum();
     map.caption = match n_marked {
         0 => format!("No vortex was found in these bins. {}", map.caption),
+        1 => format!("Marked: one vortex that was fitted. {}", map.caption),
         n => format!("Marked: {n} vortices that were fitted. {}", map.caption),
     };
     Ok(map)
