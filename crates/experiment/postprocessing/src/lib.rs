@@ -17,7 +17,7 @@ mod signals;
 mod sweep;
 mod synchronisation;
 mod wake_fields;
-mod wakes;
+mod wakes_in_report;
 mod winds;
 
 pub use analyses::{ANALYSES, Analysis};
@@ -121,7 +121,7 @@ fn report_of_study(
     let synchronisation =
         synchronisation::synchronisation(&study, directory).in_records(directory)?;
     let mut signals = signals::of_study(&study, directory).in_records(directory)?;
-    signals.extend(wakes::of_study(&study, directory)?);
+    signals.extend(wakes_in_report::of_study(&study, directory)?);
     let mut runs = Vec::with_capacity(study.runs.len());
     let mut summaries = Vec::with_capacity(study.runs.len());
     for run in study.runs {
