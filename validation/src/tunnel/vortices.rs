@@ -232,8 +232,8 @@ fn of_baseline(baseline: &Found, (first, place): (usize, f64)) -> Vec<Row> {
             (1.75, Within(PLACE_TOLERANCE)),
             "D",
         ),
-        // "The first vortex is subsequently passed by the last trailing vortex, which completes the leapfrogging
-        // of the second vortex around x/D = 3" can be read as either of the two.
+        // "The first vortex is subsequently passed by the last trailing vortex, which completes the
+        // leapfrogging of the second vortex around x/D = 3" can be read as either of the two.
         row(
             "place where the second pair leapfrogs, baseline",
             baseline.place(first % N_BLADES + 1, &baseline.leapfrogs, "the leapfrog"),
