@@ -4,6 +4,7 @@ use crate::AnalysisError;
 use crate::small::solved;
 use crate::statistics::student_97_5;
 use basis::angle::wrap_to_half_turn;
+use std::f64::consts::TAU;
 
 /// Values over an angle φ: `mean` + `amplitude` sin(φ + `phase`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +21,20 @@ pub struct SineFit {
     pub scatter: f64,
     /// Values (–).
     pub n: usize,
+    /// The largest angle between neighbouring values, in which nothing but the shape of a sine tells (rad).
+    pub largest_gap: f64,
+    /// Covariance of the mean and of what stands before sin φ and cos φ, times the square of Student's t.
+    covariance: [[f64; 3]; 3],
+}
+
+impl SineFit {
+    /// The sine at `angle` (rad), and half of its 95 % interval there.
+    pub fn at(&self, angle: f64) -> [f64; 2] {
+        let row = [1.0, angle.sin(), angle.cos()];
+        let along = |column: [f64; 3]| (0..3).map(|i| row[i] * column[i]).sum::<f64>();
+        let square = along(self.covariance.map(along));
+        [self.mean + self.amplitude * (angle + self.phase).sin(), square.max(0.0).sqrt()]
+    }
 }
 
 /// The sine of one cycle a turn with the least squares through `values` at `angles` (rad), each averaged over
@@ -80,7 +95,17 @@ pub fn sine_fit(angles: &[f64], values: &[f64], window: f64) -> Result<SineFit, 
         half_widths: [a[0], of_amplitude, of_phase].map(half_width),
         scatter: variance.sqrt(),
         n: values.len(),
+        largest_gap: largest_gap(angles),
+        covariance: chance.shares.map(|row| row.map(|share| quantile.powi(2) * variance * share)),
     })
+}
+
+/// The largest angle between neighbours of `angles`, around the turn (rad).
+fn largest_gap(angles: &[f64]) -> f64 {
+    let mut sorted: Vec<f64> = angles.iter().map(|angle| angle.rem_euclid(TAU)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let around = sorted[0] + TAU - sorted[sorted.len() - 1];
+    sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(around, f64::max)
 }
 
 /// What is left, of a variance of one, carried over to what was fitted.

@@ -110,6 +110,20 @@ fn a_sine_comes_back_with_an_interval_that_holds_it() {
     let expected = 2.0796 * 0.05 * (24.0_f64 / 21.0).sqrt() / 24.0_f64.sqrt();
     assert!((found.half_widths[0] / expected - 1.0).abs() < 1e-3);
     assert!((found.half_widths[1] / (expected * 2.0_f64.sqrt()) - 1.0).abs() < 1e-3);
+    // Evenly spread, mean, sine and cosine have variances of 1, 2 and 2 parts, and the sum 3 at any angle.
+    for angle in [0.3_f64, 2.0, -1.1] {
+        let [value, half_width] = found.at(angle);
+        let exact = found.mean + found.amplitude * (angle + found.phase).sin();
+        assert!((value - exact).abs() < 1e-12);
+        assert!((half_width / (expected * 3.0_f64.sqrt()) - 1.0).abs() < 1e-3, "{half_width}");
+    }
+    assert!((found.largest_gap - TAU / 24.0).abs() < 1e-12);
+    // Where a third of the turn has no values, the interval is wider: by numpy's inverse of the normal
+    // equations, 1.76585 times as wide in the middle of the gap as in the middle of the values.
+    let part = sine_fit(&angles[..17], &noisy[..17], 0.0).unwrap();
+    assert!((part.largest_gap - TAU * 8.0 / 24.0).abs() < 1e-12);
+    let [beside, within] = [8.0, 20.0].map(|place| part.at(TAU * place / 24.0)[1]);
+    assert!((within / beside - 1.76585).abs() < 1e-4, "{within} {beside}");
     // Of values that are there twice with all they share, the interval is that of one of each.
     let twice = |values: &[f64]| [values, values].concat();
     let doubled = sine_fit(&twice(&angles), &twice(&noisy), 1e-6).unwrap();

@@ -90,13 +90,14 @@ fn leapfrog_text(found: &Found) -> String {
     for Fitted { side, sine: fit, .. } in found.sines() {
         let [mean, amplitude, phase] = fit.half_widths;
         text += &format!(
-            "{side} the hub over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %\n",
+            "{side} the hub over the azimuth φ of the helix: {:.3} ± {:.3} D + {:.3} ± {:.3} D sin(φ + {:.0} ± {:.0}°), 95 %; none over {:.0}° of φ\n",
             fit.mean / setting.diameter,
             mean / setting.diameter,
             fit.amplitude / setting.diameter,
             amplitude / setting.diameter,
             fit.phase.to_degrees(),
-            phase.to_degrees()
+            phase.to_degrees(),
+            fit.largest_gap.to_degrees()
         );
     }
     text
@@ -208,6 +209,7 @@ pub(super) fn json(found: &Found) -> serde_json::Value {
             "phase_deg": fit.phase.to_degrees(),
             "half_widths_95": [fit.half_widths[0], fit.half_widths[1], fit.half_widths[2].to_degrees()],
             "n": fit.n,
+            "largest_gap_deg": fit.largest_gap.to_degrees(),
         })
     });
     let hub = if found.is_along() { Vec::new() } else { hub_vortices(found) };

@@ -79,8 +79,7 @@ pub(crate) fn curves(found: &Found) -> Vec<CurveFigure> {
 fn leapfrog_figure(found: &Found) -> CurveFigure {
     let setting = &found.averaged.setting;
     let at = |fit: &SineFit, degrees: u32| {
-        let mean = fit.mean + fit.amplitude * (f64::from(degrees).to_radians() + fit.phase).sin();
-        let half = fit.half_widths[0].hypot(fit.half_widths[1]);
+        let [mean, half] = fit.at(f64::from(degrees).to_radians());
         CurveAt {
             at: f64::from(degrees),
             mean: mean / setting.diameter,
@@ -103,7 +102,7 @@ fn leapfrog_figure(found: &Found) -> CurveFigure {
         name: "leapfrogging-over-helix-azimuth".to_owned(),
         title: "Where vortices leapfrog".to_owned(),
         caption: format!(
-            "On either side of the hub: the sine through leapfrogs with its interval of 95 %. {}; {}.",
+            "On either side of the hub: the sine through leapfrogs with its interval of 95 % at each azimuth. {}; {}.",
             conditions(setting),
             found.averaged.samples()
         ),
