@@ -3,6 +3,7 @@
 use super::RunFolder;
 use crate::{FileError, netcdf};
 use basis::records::Plane;
+use std::path::PathBuf;
 
 pub use crate::netcdf::{AtPhase, InstantWriter, PlacedTurbine, PlaneSetting};
 
@@ -10,6 +11,23 @@ pub use crate::netcdf::{AtPhase, InstantWriter, PlacedTurbine, PlaneSetting};
 pub(super) const MEAN: &str = "-mean.nc";
 pub(super) const LAST: &str = "-last.nc";
 pub(super) const PHASES: &str = "-phases.nc";
+
+impl RunFolder {
+    /// Names of the planes that were kept at instants: what lies in `planes/` but means, last instants and
+    /// averages by phase.
+    ///
+    /// # Errors
+    /// [`FileError::System`].
+    pub fn instants_names(&self) -> Result<Vec<String>, FileError> {
+        let name = |path: PathBuf| {
+            let file = path.file_name()?.to_str()?;
+            let is_other = [MEAN, LAST, PHASES].iter().any(|end| file.ends_with(end));
+            let name = file.strip_suffix(".nc")?;
+            (!is_other).then(|| name.to_owned())
+        };
+        Ok(self.plane_files()?.into_iter().filter_map(name).collect())
+    }
+}
 
 /// Writes the mean of a plane over the analysed time: `planes/NAME-mean.nc`.
 ///

@@ -175,13 +175,7 @@ fn kept_names(folder: &RunFolder, averages: bool) -> Result<Vec<String>, Postpro
         let all = paths.iter().filter_map(|path| RunFolder::phase_averages_name(path));
         names.extend(all.map(str::to_owned));
     }
-    // Beside instants there lie means and last fields of each plane.
-    let instants = |path: &PathBuf| {
-        let name = path.file_name()?.to_str()?.strip_suffix(".nc")?;
-        let is_one = !name.ends_with("-mean") && !name.ends_with("-last");
-        is_one.then(|| name.to_owned())
-    };
-    names.extend(folder.plane_files()?.iter().filter_map(instants));
+    names.extend(folder.instants_names()?);
     let volumes = std::fs::read_dir(folder.volumes_path());
     if volumes.is_ok_and(|mut files| files.next().is_some()) {
         names.push("volumes".to_owned());

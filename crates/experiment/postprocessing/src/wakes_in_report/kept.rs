@@ -89,8 +89,7 @@ impl Kept {
     /// # Errors
     /// What the page says instead.
     pub(super) fn of(run: &Run, path: &Path) -> Result<Self, String> {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        let field = name.trim_start_matches("averages-").to_owned();
+        let field = RunFolder::phase_averages_name(path).unwrap_or_default().to_owned();
         let stored = StoredPhaseAverages::open(path).map_err(|error| run.told(&error.into()))?;
         let head = &stored.head;
         let n_values = head.grid.len() as u64 * head.bins.len() as u64;

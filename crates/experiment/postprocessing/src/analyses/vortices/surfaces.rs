@@ -132,7 +132,7 @@ fn level(request: &Request, found: &Found, by: Criterion) -> Result<f64, Postpro
     let unit = (setting.wind_speed / setting.diameter).powi(2);
     if request.text(LEVEL.name).is_some() {
         let level = settings::positive(request, &LEVEL, 1.0)? * unit;
-        let most = greatest(found, by, f64::NEG_INFINITY)?;
+        let most = greatest(found, by, f64::NEG_INFINITY, level)?;
         if level < most {
             return Ok(level);
         }
@@ -144,7 +144,7 @@ fn level(request: &Request, found: &Found, by: Criterion) -> Result<f64, Postpro
         );
         return Err(refused(&found.averaged.path, problem, "give a smaller value with --level"));
     }
-    let most = greatest(found, by, setting.hub[0] + BEYOND * setting.diameter)?;
+    let most = greatest(found, by, setting.hub[0] + BEYOND * setting.diameter, f64::INFINITY)?;
     if most > 0.0 {
         return Ok(SHARE * most);
     }
@@ -152,8 +152,9 @@ fn level(request: &Request, found: &Found, by: Criterion) -> Result<f64, Postpro
     Err(refused(&found.averaged.path, "has no place where turning outweighs straining", fix))
 }
 
-/// The greatest criterion of all bins from `x` (m) on (1/s²), at least zero.
-fn greatest(found: &Found, by: Criterion, x: f64) -> Result<f64, PostprocessingError> {
+/// The greatest criterion of all bins from `x` (m) on (1/s²), at least zero; of the bins up to the first that
+/// has more than `enough`.
+fn greatest(found: &Found, by: Criterion, x: f64, enough: f64) -> Result<f64, PostprocessingError> {
     let grid = found.averaged.grid();
     let mut greatest = 0.0_f64;
     for index in 0..found.frames.len() {
@@ -161,6 +162,9 @@ fn greatest(found: &Found, by: Criterion, x: f64) -> Result<f64, PostprocessingE
         let beyond = |place: usize| grid.coordinate(0, grid.place(place)[0]) >= x;
         let places = (0..all.len()).filter(|place| beyond(*place) && all[*place].is_finite());
         greatest = places.fold(greatest, |most, place| most.max(all[place]));
+        if greatest > enough {
+            break;
+        }
     }
     Ok(greatest)
 }
