@@ -67,3 +67,21 @@ pub fn write_phase_planes(
     let name = format!("{}{PHASES}", first.plane.name);
     netcdf::write_phases(&folder.planes_path().join(name), setting, phases)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn what_lies_beside_instants_is_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let run = RunFolder::new(folder.path(), "helix");
+        fs::create_dir_all(run.planes_path()).expect("a folder");
+        for end in [".nc", MEAN, LAST, PHASES] {
+            fs::write(run.planes_path().join(format!("hub-height{end}")), "").expect("a file");
+        }
+        fs::write(run.planes_path().join("notes.txt"), "").expect("a file");
+        assert_eq!(run.instants_names().expect("names"), ["hub-height"]);
+    }
+}
