@@ -11,7 +11,7 @@ use crate::folds::worst;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
 use flow::lattice::atmosphere::{Atmosphere, Driving, Heating, Reference};
-use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Stencil};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Stencil, Subgrid};
 use flow::{FlowSolver, Inflow};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -77,7 +77,7 @@ fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> LatticeSettings {
     settings.kinematic_viscosity = viscosity;
     settings.ends = Ends::Periodic;
     settings.ground = Ground::Periodic;
-    settings.smagorinsky = 0.0;
+    settings.subgrid = Subgrid::smagorinsky(0.0);
     settings.atmosphere =
         Some(Atmosphere { gravity: 0.0, prandtl: 1.0, ..Atmosphere::new(REFERENCE) });
     settings

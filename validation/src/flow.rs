@@ -15,7 +15,7 @@ use crate::Row;
 use crate::folds::worst;
 use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
-use flow::lattice::{Ends, Ground, Lattice, LatticeSettings};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Subgrid};
 use flow::{FlowSolver, Inflow, WindField};
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ fn periodic_box(n_cells: [usize; 3], viscosity: f64, smagorinsky: f64) -> Lattic
     settings.kinematic_viscosity = viscosity;
     settings.ends = Ends::Periodic;
     settings.ground = Ground::Periodic;
-    settings.smagorinsky = smagorinsky;
+    settings.subgrid = Subgrid::smagorinsky(smagorinsky);
     settings
 }
 

@@ -7,7 +7,7 @@ use crate::row::Tolerance::{AtMost, Within};
 use basis::Vector3;
 use flow::FlowSolver;
 use flow::lattice::atmosphere::{Atmosphere, Driving, LevelStatistics, Perturbation, Reference};
-use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Sides, Stencil};
+use flow::lattice::{Ends, Ground, Lattice, LatticeSettings, Sides, Stencil, Subgrid};
 use std::f64::consts::TAU;
 
 /// Velocity sets, and how they are called.
@@ -105,7 +105,7 @@ fn stirred(stencil: Stencil, wind: f64) -> f64 {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 12.5, [32; 3], 0.1875, 10.0);
     settings.ends = Ends::Periodic;
     settings.stencil = stencil;
-    settings.smagorinsky = 0.0;
+    settings.subgrid = Subgrid::smagorinsky(0.0);
     settings.atmosphere = Some(Atmosphere {
         driving: Driving::Geostrophic([wind, 0.0]),
         temperature: vec![[0.0, theta], [400.0, theta + slope * 400.0]],

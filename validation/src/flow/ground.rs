@@ -5,7 +5,7 @@ use crate::Row;
 use crate::row::Tolerance::Within;
 use basis::Vector3;
 use farm::assemble::SMAGORINSKY_OVER_GROUND;
-use flow::lattice::{Ends, Ground, LatticeSettings, VON_KARMAN};
+use flow::lattice::{Ends, Ground, LatticeSettings, Subgrid, VON_KARMAN};
 use std::f64::consts::{PI, TAU};
 
 /// Where the expected values come from.
@@ -31,7 +31,7 @@ pub fn log_profile() -> Vec<Row> {
     settings.ends = Ends::Periodic;
     settings.ground = Ground::WallStress { roughness_length: ROUGHNESS_LENGTH };
     settings.acceleration = Vector3::new(FRICTION_VELOCITY.powi(2) / HEIGHT, 0.0, 0.0);
-    settings.smagorinsky = SMAGORINSKY_OVER_GROUND;
+    settings.subgrid = Subgrid::smagorinsky(SMAGORINSKY_OVER_GROUND);
     // A box this small gains nothing from more threads.
     settings.threads = Some(1);
     let k = TAU / (n[0] as f64 * spacing);

@@ -144,7 +144,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
         Ground::Slip => settings.ground = lattice::Ground::Slip,
         Ground::Rough { roughness_length } => {
             settings.ground = lattice::Ground::WallStress { roughness_length };
-            settings.smagorinsky = SMAGORINSKY_OVER_GROUND;
+            settings.subgrid = lattice::Subgrid::smagorinsky(SMAGORINSKY_OVER_GROUND);
         }
     }
     domain.method.apply(&mut settings);

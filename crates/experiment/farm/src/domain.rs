@@ -1,15 +1,16 @@
 //! The box of cells in which a flow is resolved: its keys of `[flow]`, and what they say.
 
+use crate::refinement;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
-use basis::keys::{Holds, Key, Slip, Table, Values, above, from, key};
-use flow::lattice::{LatticeSettings, Stencil};
+use basis::keys::{Holds, Key, Objection, Slip, Table, Values, above, from, key};
+use flow::lattice::{LatticeSettings, Stencil, Subgrid, SubgridModel};
 
 /// Gaussian width of forces over cell size (–): two cells is the least that the lattice carries without
 /// ringing.
 pub const SMEARING_CELLS: f64 = 2.0;
 
 /// Keys of `[flow]` for a box of cells.
-pub static KEYS: [Key; 10] = [
+pub static KEYS: [Key; 12] = [
     key(
         "cells_per_diameter",
         from(8.0, 200.0),
@@ -74,7 +75,21 @@ pub static KEYS: [Key; 10] = [
         Otherwise("0.12; 0.16 over a rough ground"),
         "Constant of Smagorinsky's eddy viscosity, whose filter is a cell wide.",
     ),
+    key("subgrid", Holds::Choice(&SUBGRID_WORDS), "", Otherwise("`smagorinsky`"), SUBGRID_MEANING),
+    key(
+        "subgrid_constant",
+        from(0.0, 1.0),
+        "–",
+        Otherwise("0.5 for `wale`, 0.07 for `vreman`, 0.3 for `amd`"),
+        "Constant of the model that `subgrid` names, where that is not Smagorinsky's: C of (C Δ)² for `wale`, of C Δ² for the others.",
+    ),
 ];
+
+/// Words of `subgrid`, as [`SubgridModel::word`] has them.
+pub const SUBGRID_WORDS: [&str; 4] = ["smagorinsky", "wale", "vreman", "amd"];
+
+/// What `subgrid` means.
+pub const SUBGRID_MEANING: &str = "Model of the eddies that cells do not resolve. `smagorinsky`: from the strain of the cell. From the velocity gradient between neighbours, in a pass of its own and with 16 bytes more a cell: `wale` (Nicoud, Ducros 1999), `vreman` (Vreman 2004), `amd`: anisotropic minimum dissipation (Rozema et al. 2015). docs/validation/flow.md compares them.";
 
 /// `flow.ground` of a rough ground.
 pub static GROUND: Table = Table {
@@ -118,8 +133,10 @@ pub struct Domain {
 pub struct Method {
     /// Velocity set.
     pub stencil: Stencil,
-    /// Constant of Smagorinsky's model (–); that of the box's ground when absent.
-    pub smagorinsky: Option<f64>,
+    /// Model of unresolved eddies.
+    pub subgrid: SubgridModel,
+    /// Its constant (–); when absent that of the box's ground for Smagorinsky's, the usual one for others.
+    pub constant: Option<f64>,
 }
 
 /// That of a case which says nothing of it.
@@ -133,8 +150,11 @@ impl Method {
     /// Gives `settings` what the case asks for, and leaves what it does not.
     pub(crate) fn apply(self, settings: &mut LatticeSettings) {
         settings.stencil = self.stencil;
-        if let Some(constant) = self.smagorinsky {
-            settings.smagorinsky = constant;
+        if self.subgrid != settings.subgrid.model {
+            settings.subgrid = Subgrid::new(self.subgrid);
+        }
+        if let Some(constant) = self.constant {
+            settings.subgrid.constant = constant;
         }
     }
 }
@@ -162,10 +182,50 @@ impl Domain {
                     "d3q27" => Stencil::D3Q27,
                     _ => Stencil::D3Q19,
                 },
-                smagorinsky: all.optional_number("smagorinsky_constant"),
+                subgrid: subgrid_of(&all),
+                constant: all.optional_number(match subgrid_of(&all) {
+                    SubgridModel::Smagorinsky => "smagorinsky_constant",
+                    _ => "subgrid_constant",
+                }),
             },
         }
     }
+}
+
+/// The model that `subgrid` among `values` names; Smagorinsky's where it is not there.
+pub fn subgrid_of(values: &Values) -> SubgridModel {
+    let word = values.has("subgrid").then(|| values.word("subgrid"));
+    word.and_then(SubgridModel::of_word).unwrap_or(SubgridModel::Smagorinsky)
+}
+
+/// What about the model of unresolved eddies in the `values` of `[flow]` cannot be.
+pub fn check_subgrid(values: &Values) -> Vec<Objection> {
+    let model = subgrid_of(values);
+    let mut objections = Vec::new();
+    let (foreign, own) = match model.needs_neighbours() {
+        true => ("smagorinsky_constant", "subgrid_constant"),
+        false => ("subgrid_constant", "smagorinsky_constant"),
+    };
+    if values.has(foreign) {
+        objections.push(Objection {
+            key: Some(foreign),
+            message: format!("has no use where flow.subgrid is \"{}\"", model.word()),
+            label: "of another model",
+            fix: format!("give flow.{own}, or leave it out"),
+        });
+    }
+    if model.needs_neighbours() && !values.tables(refinement::NAME).is_empty() {
+        objections.push(Objection {
+            key: Some("subgrid"),
+            message: format!(
+                "= \"{}\" needs the wind of neighbours, which boxes of finer cells do not hand each other",
+                model.word()
+            ),
+            label: "not with [[flow.refinement]]",
+            fix: "use flow.subgrid = \"smagorinsky\", or leave out [[flow.refinement]]".to_owned(),
+        });
+    }
+    objections
 }
 
 /// The ground.

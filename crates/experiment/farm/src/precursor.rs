@@ -7,6 +7,7 @@ mod hub_control;
 mod plan;
 mod start;
 
+use flow::lattice::SubgridModel;
 pub use hub_control::HubControl;
 pub use plan::PrecursorPlan;
 
@@ -38,6 +39,8 @@ pub struct PeriodicBox {
     pub size: [f64; 3],
     /// Edge of a cell (m).
     pub cell: f64,
+    /// Model of unresolved eddies.
+    pub subgrid: SubgridModel,
     /// Threads; all cores when absent.
     pub threads: Option<usize>,
 }

@@ -8,7 +8,7 @@ use crate::case::{
     Control, DynamicInflow, FROM_WEST, Flow, Instruments, Output, Placement, Position, Run, Shear,
     Solver, Time, TowerInfluence, TurbulenceModel, Wind,
 };
-use flow::lattice::Stencil;
+use flow::lattice::{Stencil, Subgrid, SubgridModel};
 
 fn case(positions: &[[f64; 2]]) -> Case {
     let placement = |(index, &position): (usize, &[f64; 2])| Placement {
@@ -138,20 +138,29 @@ fn the_lattice_is_computed_as_the_case_asks() {
     let settings_and_memory = |case: &Case| {
         let plan = plan(case, &footprints()).unwrap();
         let settings = crate::assemble::lattice_settings(case, &plan);
-        ((settings.stencil, settings.smagorinsky), (case.flow.solver.memory)(case, &plan))
+        ((settings.stencil, settings.subgrid), (case.flow.solver.memory)(case, &plan))
     };
     let plain = case(&[[0.0, 0.0]]);
     let (method, memory) = settings_and_memory(&plain);
-    assert_eq!(method, (Stencil::D3Q19, 0.12));
+    assert_eq!(method, (Stencil::D3Q19, Subgrid::smagorinsky(0.12)));
 
     let mut asked = plain.clone();
     asked.flow.values.set("velocity_set", "d3q27");
     let (method, more) = settings_and_memory(&asked);
-    assert_eq!(method, (Stencil::D3Q27, 0.12));
+    assert_eq!(method, (Stencil::D3Q27, Subgrid::smagorinsky(0.12)));
     assert_eq!(more * 80, memory * 112, "27 and 19 populations of four bytes, and four more");
 
     asked.flow.values.set("smagorinsky_constant", 0.1);
-    assert_eq!(settings_and_memory(&asked).0, (Stencil::D3Q27, 0.1));
+    assert_eq!(settings_and_memory(&asked).0, (Stencil::D3Q27, Subgrid::smagorinsky(0.1)));
+
+    let mut asked = plain.clone();
+    asked.flow.values.set("subgrid", "vreman");
+    let (method, more) = settings_and_memory(&asked);
+    assert_eq!(method, (Stencil::D3Q19, Subgrid::new(SubgridModel::Vreman)));
+    assert_eq!(more * 80, memory * 96, "four values more");
+    asked.flow.values.set("subgrid_constant", 0.05);
+    let vreman = Subgrid { model: SubgridModel::Vreman, constant: 0.05 };
+    assert_eq!(settings_and_memory(&asked).0, (Stencil::D3Q19, vreman));
 }
 
 #[test]

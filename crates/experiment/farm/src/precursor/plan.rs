@@ -7,7 +7,7 @@ use basis::Vector3;
 use flow::Inflow;
 use flow::inflow::PlaneGrid;
 use flow::lattice::atmosphere::{Atmosphere, Damping, Driving, GRAVITY, Heating, Perturbation};
-use flow::lattice::{Ends, Ground, LatticeSettings, Stencil};
+use flow::lattice::{Ends, Ground, LatticeSettings, Stencil, Subgrid, SubgridModel};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -143,7 +143,10 @@ impl Precursor {
         );
         settings.ends = Ends::Periodic;
         settings.ground = Ground::WallStress { roughness_length: air.roughness_length };
-        settings.smagorinsky = SMAGORINSKY_OVER_GROUND;
+        settings.subgrid = match self.domain.subgrid {
+            SubgridModel::Smagorinsky => Subgrid::smagorinsky(SMAGORINSKY_OVER_GROUND),
+            model => Subgrid::new(model),
+        };
         // Its eddies live for hours, in which nineteen directions would let the wind feed them.
         settings.stencil = Stencil::D3Q27;
         settings.threads = self.domain.threads;

@@ -19,6 +19,8 @@ const FURTHER_BYTES: u64 = 4;
 
 /// Cells per diameter below which wakes are smeared (–).
 const CELLS_TO_WARN: f64 = 16.0;
+/// Memory of a cell whose eddies follow from the wind of neighbours (bytes): that wind and a viscosity.
+const EDDY_BYTES: u64 = 16;
 
 /// Those of a box of cells, and that of finer ones in it.
 static KEYS: [Key; domain::KEYS.len() + 1] = {
@@ -37,7 +39,7 @@ pub static LATTICE: SolverKind = SolverKind {
     about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines are in each other's wakes",
     limits: "",
     keys: &KEYS,
-    check: refinement::check,
+    check: |values| [refinement::check(values), domain::check_subgrid(values)].concat(),
     wind: WindSource::AtInlet,
     resolves_induction: true,
     has_wakes: true,
@@ -72,7 +74,8 @@ fn begin(start: Start) -> Result<Air, SolverError> {
 }
 
 fn memory(plan: &Plan) -> u64 {
-    let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES;
+    let of_eddies = if plan.method.subgrid.needs_neighbours() { EDDY_BYTES } else { 0 };
+    let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES + of_eddies;
     plan.cells() as u64 * bytes + plan.exchange_memory()
 }
 

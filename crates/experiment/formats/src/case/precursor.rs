@@ -9,6 +9,7 @@ use super::sources::Sources;
 use super::values::{assignments, values_of};
 use crate::atomic;
 use basis::keys::{Objection, Value, Values};
+use farm::domain::subgrid_of;
 use farm::precursor::{AirColumn, PeriodicBox, Precursor, PrecursorTime, WantedPlanes};
 use sha2::Digest;
 use std::ops::Range;
@@ -127,6 +128,7 @@ fn precursor_of(values: &Values) -> Precursor {
         domain: PeriodicBox {
             size: ["length", "width", "height"].map(|key| domain.number(key)),
             cell: domain.number("cell"),
+            subgrid: subgrid_of(&domain),
             threads: whole(&domain, "threads").map(|threads| threads as usize),
         },
         air: AirColumn {

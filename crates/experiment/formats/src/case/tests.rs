@@ -9,7 +9,7 @@ use super::*;
 use control::meandering::{Followed, Leader, MeanderingSettings, Reference};
 use control::phase_sync::{PhaseNoise, PhaseSyncSettings};
 use farm::case::{Control, Ground, Method, Position, Sense, Sides};
-use flow::lattice::Stencil;
+use flow::lattice::{Stencil, SubgridModel};
 use proptest::prelude::*;
 use std::fs;
 
@@ -241,13 +241,46 @@ fn overrides_reach_every_key() {
     assert_eq!(case.wind.speed, 8.0);
     assert_eq!(case.flow.domain().sides, Sides::Slip);
     assert_eq!(case.flow.domain().ground, Ground::Rough { roughness_length: 0.001 });
-    let method = Method { stencil: Stencil::D3Q27, smagorinsky: Some(0.1) };
+    let method =
+        Method { stencil: Stencil::D3Q27, subgrid: SubgridModel::Smagorinsky, constant: Some(0.1) };
     assert_eq!(case.flow.domain().method, method);
     assert_eq!(case.turbines[0].model, "iea-22mw");
     assert_eq!(case.turbines[1].position, Position::Diameters([7.0, 0.0]));
     let helix = &case.runs[1].control[0];
     assert_eq!(helix.values().angle("amplitude_deg"), 3f64.to_radians());
     assert!(case.runs[0].control[1].is(&control::pulse::PULSE));
+}
+
+#[test]
+fn the_model_of_eddies_is_read_and_refused_where_it_does_not_fit() {
+    let case = small(&["flow.subgrid=amd", "flow.subgrid_constant=0.2"]).unwrap();
+    let method = case.flow.domain().method;
+    assert_eq!((method.subgrid, method.constant), (SubgridModel::MinimumDissipation, Some(0.2)));
+    assert_eq!(small(&[]).unwrap().flow.domain().method, Method::default());
+    for (overrides, words) in [
+        (
+            &["flow.subgrid=wale", "flow.smagorinsky_constant=0.1"][..],
+            [
+                "smagorinsky_constant` has no use where flow.subgrid is \"wale\"",
+                "give flow.subgrid_constant",
+            ],
+        ),
+        (
+            &["flow.subgrid_constant=0.1"],
+            [
+                "subgrid_constant` has no use where flow.subgrid is \"smagorinsky\"",
+                "give flow.smagorinsky_constant",
+            ],
+        ),
+        (
+            &["flow.subgrid=vreman", "flow.refinement=[{ upstream_diameters = 2.0 }]"],
+            ["needs the wind of neighbours", "leave out [[flow.refinement]]"],
+        ),
+        (&["flow.subgrid=wall"], ["`flow.subgrid`", "wale"]),
+    ] {
+        let lines = small(overrides).unwrap_err().to_lines();
+        assert!(words.iter().all(|word| lines.contains(word)), "{overrides:?}: {lines}");
+    }
 }
 
 #[test]

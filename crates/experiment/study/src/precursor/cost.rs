@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 
 /// Bytes of a cell with its temperature, boundaries included.
 const CELL_BYTES: u64 = 146;
+/// What the viscosity of eddies takes besides, where it follows from the wind of neighbours.
+const EDDY_BYTES: u64 = 4;
 /// Bytes of a point of a plane: three components as they come, which stay for a longer record, and three of
 /// the full field.
 const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
@@ -44,7 +46,8 @@ impl PrecursorEstimate {
     /// # Errors
     /// [`PrecursorError`] for air that cannot be set up, or that breaks down at once.
     pub(super) fn new(precursor: &Precursor, plan: &PrecursorPlan) -> Result<Self, PrecursorError> {
-        let memory = plan.cells() as u64 * CELL_BYTES;
+        let of_eddies = if precursor.domain.subgrid.needs_neighbours() { EDDY_BYTES } else { 0 };
+        let memory = plan.cells() as u64 * (CELL_BYTES + of_eddies);
         let points = (plan.grid.n_y * plan.grid.n_z) as u64;
         let recorded = points.saturating_mul(plan.grid.n_steps as u64);
         let statistics = (plan.n_statistics() * plan.n_cells[2] as u64).saturating_mul(LEVEL_BYTES);

@@ -5,8 +5,7 @@
 //! which it acts as buoyancy ([`law`]). What the ground does to wind and temperature is a matter of
 //! [`similarity`], held by [`surface`].
 
-mod coefficients;
-mod fields;
+pub(crate) mod coefficients;
 pub(crate) mod law;
 mod layer;
 pub(crate) mod probe;
@@ -17,8 +16,7 @@ pub(crate) mod stratification;
 pub(crate) mod surface;
 pub(crate) mod transport;
 
-pub(crate) use fields::N_KEPT;
-pub use layer::{friction_velocity, ground_heat_flux, layer_depth};
+pub use layer::{friction_velocity, ground_heat_flux, layer_depth, mean_stress};
 pub use probe::AirRow;
 pub use settings::{
     Atmosphere, AtmosphereError, Damping, Driving, GRAVITY, Heating, Perturbation, Reference,

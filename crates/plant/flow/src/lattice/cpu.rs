@@ -1,6 +1,7 @@
 //! The engine that runs on the processor: populations in one array, updated in place by threads that share
 //! the rows.
 
+mod eddies;
 mod exchange;
 mod worker;
 
@@ -20,6 +21,7 @@ use super::scaling::Scaling;
 use super::settings::{LatticeError, LatticeSettings, Stencil};
 use super::stencil::D3Q19;
 use super::stencil27::D3Q27;
+use super::subgrid::SubgridModel;
 use super::sweep::Step;
 use super::values::{read_values, write_values};
 use super::wall::Wall;
@@ -27,6 +29,7 @@ use crate::Inflow;
 use crate::pool::Pool;
 use crate::simd::{Backend, MAXIMUM_LANES};
 use basis::{PointForce, Vector3};
+use eddies::Eddies;
 use std::io::{Read, Result, Write};
 use std::sync::Mutex;
 use worker::{Worker, own};
@@ -50,6 +53,7 @@ pub(crate) struct Cpu {
     pool: Pool,
     wall: Option<Wall>,
     stratification: Option<Stratification>,
+    eddies: Option<Eddies>,
     relaxation_times: Vec<f32>,
     subgrid: Vec<f32>,
     acceleration: [f32; 3],
@@ -91,10 +95,12 @@ impl Cpu {
         let memory = Memory::zeroed(layout.n_values()).ok_or_else(|| refused.clone())?;
         let stratification = match &settings.atmosphere {
             Some(atmosphere) => Some(
-                Stratification::new(atmosphere, settings, &layout, sides, levels).ok_or(refused)?,
+                Stratification::new(atmosphere, settings, &layout, sides, levels)
+                    .ok_or_else(|| refused.clone())?,
             ),
             None => None,
         };
+        let eddies = Eddies::new(settings, &layout, sides, levels).ok_or(refused)?;
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         let n_threads = settings.threads.unwrap_or_else(cores).min(layout.n_rows());
         let wall = Wall::new(settings, &scaling);
@@ -105,7 +111,6 @@ impl Cpu {
             .collect();
         let acceleration =
             scaling.to_lattice_acceleration(settings.acceleration).as_vec3().to_array();
-        let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;
         Ok(Self {
             kernel,
             stencil: settings.stencil,
@@ -115,8 +120,9 @@ impl Cpu {
             pool: Pool::new(n_threads),
             wall,
             stratification,
+            eddies,
             relaxation_times: relaxation_times(settings, &scaling),
-            subgrid: vec![subgrid; settings.n_cells[2]],
+            subgrid: vec![smagorinsky_factor(settings); settings.n_cells[2]],
             acceleration,
             outlet_stiffness: (2.0 * OUTLET_PULL / (3.0_f64.sqrt() * settings.n_cells[0] as f64))
                 as f32,
@@ -150,6 +156,9 @@ impl Cpu {
 impl Engine for Cpu {
     fn start(&mut self, inflow: &dyn Inflow) {
         self.n_steps = 0;
+        if let Some(eddies) = &mut self.eddies {
+            eddies.forget(self.stratification.as_mut());
+        }
         let view = view(&self.memory, &self.layout, self.n_steps);
         let (workers, kernel, scaling) = (&self.workers, &self.kernel, &self.scaling);
         let heat = self.stratification.as_ref();
@@ -196,14 +205,20 @@ impl Engine for Cpu {
             outlet_stiffness: self.outlet_stiffness,
         };
         let stratified = air.map(|air| air.air(n_steps));
+        let eddies = self.eddies.as_ref();
+        let noted = eddies.and_then(Eddies::noted);
         self.pool.run(&|thread| {
             let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
-            match &stratified {
-                Some(air) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
-                None => kernel.sweep(&step, spreader.blocks(), share),
+            match (&stratified, &noted) {
+                (Some(air), _) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
+                (None, Some(air)) => kernel.sweep_noted(&step, air, spreader.blocks(), share),
+                (None, None) => kernel.sweep(&step, spreader.blocks(), share),
             }
         });
+        if let Some(mixing) = eddies.map(|eddies| eddies.mixing(air, n_steps)) {
+            self.pool.run(&|thread| kernel.mix(&mixing, own(&workers[thread]).share.rows.clone()));
+        }
         if let Some(air) = air {
             let transport = air.transport(n_steps);
             self.pool.run(&|thread| {
@@ -235,6 +250,11 @@ impl Engine for Cpu {
             Stencil::D3Q27 => probe::read_row::<D3Q27, 27>(&view, air, law, n_steps, row, state),
         }
         true
+    }
+
+    fn eddy_viscosity(&self, row: usize) -> Option<&[f32]> {
+        let mixing = self.eddies.as_ref()?.mixing(self.stratification.as_ref(), self.n_steps);
+        Some(mixing.viscosity(row))
     }
 
     fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4] {
@@ -282,7 +302,7 @@ impl Engine for Cpu {
             }
             air.write(writer, &mut bytes)?;
         }
-        Ok(())
+        self.eddies.as_ref().map_or(Ok(()), |eddies| eddies.write(writer, &mut bytes))
     }
 
     fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()> {
@@ -316,6 +336,9 @@ impl Engine for Cpu {
             }
             air.read_state(reader, &mut bytes)?;
         }
+        if let Some(eddies) = &mut self.eddies {
+            eddies.read(reader, &mut bytes)?;
+        }
         self.n_steps = n_steps;
         Ok(())
     }
@@ -336,7 +359,16 @@ impl Engine for Cpu {
         // Each row has its place at the inlet: two vectors in double and ten single values.
         let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>());
         let heat = self.stratification.as_ref().map_or(0, Stratification::bytes);
-        (self.memory.bytes() + wall + ends + heat) as u64
+        let noted = self.eddies.as_ref().map_or(0, Eddies::bytes);
+        (self.memory.bytes() + wall + ends + heat + noted) as u64
+    }
+}
+
+/// Smagorinsky's factor in the closed form for the relaxation time; zero under another model.
+fn smagorinsky_factor(settings: &LatticeSettings) -> f32 {
+    match settings.subgrid.model {
+        SubgridModel::Smagorinsky => (SUBGRID_FACTOR * settings.subgrid.constant.powi(2)) as f32,
+        _ => 0.0,
     }
 }
 

@@ -43,6 +43,13 @@ pub trait Engine: Send + Sync {
         false
     }
 
+    /// The viscosity of eddies on row number `row` in the step to come (cells² a step), where a pass of its
+    /// own finds it.
+    fn eddy_viscosity(&self, row: usize) -> Option<&[f32]> {
+        let _ = row;
+        None
+    }
+
     /// Density less one, and the velocity components forces aside, of eight cells (x, y, z).
     fn read_cells(&self, cells: &[[usize; 3]; 8]) -> [[f32; 8]; 4];
 

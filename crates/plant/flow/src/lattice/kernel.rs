@@ -3,6 +3,7 @@
 use super::atmosphere::law::Stratified;
 use super::atmosphere::stratification::HeatShare;
 use super::atmosphere::transport::{self, Transport};
+use super::eddies::{self, Mixing, Noted};
 use super::forces::ForceBlock;
 use super::probe::{self, RowState, View};
 use super::settings::Stencil as Set;
@@ -19,12 +20,16 @@ pub(crate) struct Kernel {
     /// Directions of the populations.
     pub(crate) directions: &'static [[i8; 3]],
     sweep: unsafe fn(&Step<'_>, &[ForceBlock], &mut Share),
+    sweep_noted: SweepNoted,
     sweep_stratified: SweepStratified,
+    mix: unsafe fn(&Mixing<'_>, Range<usize>),
     carry: unsafe fn(&Transport<'_>, Range<usize>, &mut HeatShare),
     read_row: unsafe fn(&View<'_>, usize, &mut RowState),
     read_cells: ReadCells,
     write_row: unsafe fn(&View<'_>, usize, &RowState),
 }
+
+type SweepNoted = unsafe fn(&Step<'_>, &Noted<'_>, &[ForceBlock], &mut Share);
 
 type SweepStratified = unsafe fn(&Step<'_>, &Stratified<'_>, &[ForceBlock], &mut Share);
 
@@ -36,6 +41,21 @@ macro_rules! kernel {
         unsafe fn sweep(step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
             // SAFETY: handed through.
             unsafe { sweep::rows::<$vector, $stencil, $n, Still>(step, &Still, blocks, share) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn sweep_noted(
+            step: &Step<'_>,
+            air: &Noted<'_>,
+            blocks: &[ForceBlock],
+            share: &mut Share,
+        ) {
+            // SAFETY: handed through.
+            unsafe { sweep::rows::<$vector, $stencil, $n, Noted<'_>>(step, air, blocks, share) }
+        }
+        $(#[target_feature(enable = $features)])?
+        unsafe fn mix(pass: &Mixing<'_>, rows: Range<usize>) {
+            // SAFETY: handed through.
+            unsafe { eddies::rows::<$vector>(pass, rows) }
         }
         $(#[target_feature(enable = $features)])?
         unsafe fn sweep_stratified(
@@ -68,7 +88,17 @@ macro_rules! kernel {
             unsafe { probe::write_row::<$vector, $stencil, $n>(view, row, state) }
         }
         let directions = &<$stencil as Stencil<$n>>::DIRECTIONS;
-        Kernel { directions, sweep, sweep_stratified, carry, read_row, read_cells, write_row }
+        Kernel {
+            directions,
+            sweep,
+            sweep_noted,
+            sweep_stratified,
+            mix,
+            carry,
+            read_row,
+            read_cells,
+            write_row,
+        }
     }};
 }
 
@@ -95,6 +125,24 @@ impl Kernel {
     pub(crate) fn sweep(&self, step: &Step<'_>, blocks: &[ForceBlock], share: &mut Share) {
         // SAFETY: shares of one step have disjoint rows, and the back-end was checked.
         unsafe { (self.sweep)(step, blocks, share) }
+    }
+
+    /// The same in air whose cells tell their wind.
+    pub(crate) fn sweep_noted(
+        &self,
+        step: &Step<'_>,
+        air: &Noted<'_>,
+        blocks: &[ForceBlock],
+        share: &mut Share,
+    ) {
+        // SAFETY: as above.
+        unsafe { (self.sweep_noted)(step, air, blocks, share) }
+    }
+
+    /// Finds the viscosity of eddies on `rows` after a sweep that is done on all rows.
+    pub(crate) fn mix(&self, pass: &Mixing<'_>, rows: Range<usize>) {
+        // SAFETY: rows of one step are disjoint, and the back-end was checked.
+        unsafe { (self.mix)(pass, rows) }
     }
 
     /// The same in an atmosphere, which notes the wind of the step.

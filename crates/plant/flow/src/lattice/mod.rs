@@ -4,7 +4,7 @@
 //! where the next step finds them. Periodic and slip sides are a matter of [addresses](layout), inlet and
 //! outlet of a [halo](ends) cell at either end of a row, the ground's stress of a [force](wall). The pass is
 //! written once, generic over the [velocity set](stencil) and the [vector](crate::simd), and compiled for
-//! each instruction set.
+//! each instruction set. Models of [eddies] that look at neighbours have a pass of their own after it.
 //!
 //! Reading order: `settings`, `scaling`, `solver`, `engine`; then `cpu`, `layout`, `stencil`, `collision`,
 //! `sweep`.
@@ -13,9 +13,11 @@ pub mod atmosphere;
 mod cell_box;
 mod collision;
 mod cpu;
+mod eddies;
 mod edges;
 mod ends;
 mod engine;
+mod fields;
 mod forces;
 mod inlet;
 mod kernel;
@@ -35,6 +37,7 @@ mod state;
 mod stencil;
 mod stencil27;
 mod still;
+mod subgrid;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -48,8 +51,7 @@ pub use forces::ForceBlock;
 pub use links::{Exchange, Fill, Link, Way};
 pub use probe::RowState;
 pub use scaling::Scaling;
-pub use settings::{
-    DEFAULT_SMAGORINSKY, Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil,
-};
+pub use settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
 pub use solver::Lattice;
+pub use subgrid::{DEFAULT_SMAGORINSKY, Subgrid, SubgridModel};
 pub use wall::VON_KARMAN;

@@ -99,9 +99,7 @@ impl Refined {
         boxes: &[Refinement],
         inflow: Arc<dyn Inflow>,
     ) -> Result<Self, RefinementError> {
-        if settings.atmosphere.is_some() && !boxes.is_empty() {
-            return Err(RefinementError::Atmosphere);
-        }
+        boxes::check_air(&settings, boxes)?;
         let beyond = boxes::beyond(&settings);
         let grid = Grid::new(settings, boxes, &beyond, &inflow)?;
         Ok(Self { span: 1 << grid.depth(), grid, n_steps: 0 })

@@ -2,6 +2,7 @@
 
 use super::atmosphere::{Atmosphere, AtmosphereError};
 use super::scaling::Scaling;
+use super::subgrid::{DEFAULT_SMAGORINSKY, Subgrid};
 use crate::simd::Backend;
 use basis::Vector3;
 use thiserror::Error;
@@ -44,8 +45,8 @@ pub struct LatticeSettings {
     pub ground: Ground,
     /// Acceleration of all air, as by a pressure gradient (m/s²).
     pub acceleration: Vector3,
-    /// Constant of Smagorinsky's model (–); 0 switches it off.
-    pub smagorinsky: f64,
+    /// Model of the eddies that the grid does not resolve.
+    pub subgrid: Subgrid,
     /// Rotation, temperature and what comes with it; none where the air is alike everywhere.
     pub atmosphere: Option<Atmosphere>,
     /// Velocity set.
@@ -55,12 +56,6 @@ pub struct LatticeSettings {
     /// Instruction set; the fastest that the machine has when absent.
     pub backend: Option<Backend>,
 }
-
-/// Smagorinsky's constant in sheared flow away from walls.
-///
-/// Deardorff (1970), J. Fluid Mech. 41, 453, found 0.10 for channel flow; free shear and wakes are run with
-/// 0.10 to 0.14, isotropic turbulence with 0.17 (Lilly 1967).
-pub const DEFAULT_SMAGORINSKY: f64 = 0.12;
 
 impl LatticeSettings {
     /// Real air between inlet and outlet, slip sides, slip ground, and the defaults of everything else.
@@ -83,7 +78,7 @@ impl LatticeSettings {
             sides: Sides::Periodic,
             ground: Ground::Slip,
             acceleration: Vector3::ZERO,
-            smagorinsky: DEFAULT_SMAGORINSKY,
+            subgrid: Subgrid::smagorinsky(DEFAULT_SMAGORINSKY),
             atmosphere: None,
             stencil: Stencil::D3Q19,
             threads: None,
@@ -130,8 +125,9 @@ impl LatticeSettings {
                 return Err(LatticeError::NotPositive { name, value });
             }
         }
+        let constant = self.subgrid.constant;
         let not_negative =
-            [("reference speed", self.reference_speed), ("smagorinsky constant", self.smagorinsky)];
+            [("reference speed", self.reference_speed), ("subgrid constant", constant)];
         for (name, value) in not_negative {
             if !(value.is_finite() && value >= 0.0) {
                 return Err(LatticeError::NotPositive { name, value });

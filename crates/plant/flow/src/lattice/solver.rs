@@ -108,6 +108,16 @@ impl Lattice {
         self.engine.memory()
     }
 
+    /// The viscosity of eddies at every cell in the step to come (m²/s), x fastest, then y; none where it is
+    /// found in the collision.
+    pub fn eddy_viscosity(&self) -> Option<Vec<f64>> {
+        let unit = self.scaling.to_lattice_viscosity(1.0);
+        let rows = (0..self.n_rows()).map(|row| self.engine.eddy_viscosity(row));
+        let rows: Option<Vec<&[f32]>> = rows.collect();
+        let values = rows?.concat();
+        Some(values.into_iter().map(|viscosity| f64::from(viscosity) / unit).collect())
+    }
+
     /// Looks at every cell.
     ///
     /// # Errors

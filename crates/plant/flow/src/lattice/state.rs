@@ -4,10 +4,10 @@
 //! step (position, force, smearing length each); then what the engine writes, which on the processor is the
 //! outlet halo row by row, the filtered wind at the ground, all populations; in an atmosphere also what the
 //! ground remembers, the mean temperatures of the levels, temperature now and a step before, and its last
-//! change.
+//! change; the viscosity of eddies, where a pass of its own finds it.
 //! Everything else follows from settings and inflow.
 
-use super::atmosphere::N_KEPT;
+use super::fields::N_KEPT;
 use super::solver::Lattice;
 use basis::{PointForce, Vector3};
 use std::io::{Error, ErrorKind, Read, Result, Write};
@@ -88,7 +88,8 @@ impl Lattice {
     fn header(&self) -> [u64; 5] {
         let [x, y, z] = self.n_cells().map(|n| n as u64);
         let heat = self.settings().atmosphere.as_ref().map_or(0, |_| N_KEPT as u64);
-        [VERSION, x, y, z, self.settings().stencil.n_directions() + heat]
+        let eddies = u64::from(self.settings().subgrid.model.needs_neighbours());
+        [VERSION, x, y, z, self.settings().stencil.n_directions() + heat + eddies]
     }
 }
 

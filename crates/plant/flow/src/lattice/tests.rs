@@ -3,6 +3,7 @@
 mod atmosphere;
 mod boundaries;
 mod closed_forms;
+mod eddies;
 mod engines;
 pub(super) mod ground;
 mod invariants;
@@ -32,7 +33,7 @@ pub(super) fn periodic_box(n_cells: [usize; 3], viscosity: f64) -> LatticeSettin
     settings.ends = Ends::Periodic;
     settings.sides = Sides::Periodic;
     settings.ground = Ground::Periodic;
-    settings.smagorinsky = 0.0;
+    settings.subgrid = Subgrid::smagorinsky(0.0);
     settings.threads = Some(1);
     settings
 }

@@ -2,6 +2,7 @@
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Slip, Table, above, from, key};
+use farm::domain::{SUBGRID_MEANING, SUBGRID_WORDS};
 
 /// Greatest seed: the lattice's noise tells so many apart.
 const SEED_MOST: u64 = (1 << 24) - 1;
@@ -51,6 +52,7 @@ pub(in crate::case) static BOX: Table = Table {
         key("height", above(10.0, 2e4), "m", Required, "Height; the inversion and the damped layer have their place in it.")
             .mistaken(&[Slip { unit: "km", factor: 1000.0 }]),
         key("cell", above(0.0, 500.0), "m", Required, "Edge of a cell: half as large takes sixteen times as long. At least eight lie below the inversion."),
+        key("subgrid", Holds::Choice(&SUBGRID_WORDS), "", Otherwise("`smagorinsky`"), SUBGRID_MEANING),
         key("threads", Holds::Whole { least: 1, most: 1024 }, "–", Otherwise("all cores"), "Threads. The result does not depend on it."),
     ],
 };

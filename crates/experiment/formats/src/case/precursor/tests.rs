@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::fuzz::numbers::{NEVER, numbers_of};
+use flow::lattice::{Subgrid, SubgridModel};
 
 const TEXT: &str = "name = \"small\"\n\
     [box]\nlength = 1600\nwidth = 800.0\nheight = 400\ncell = 20.0\n\
@@ -70,8 +71,23 @@ fn what_is_written_is_read_again_and_times_do_not_decide() {
     for set in ["time.record=1200", "time.spin_up=9000", "box.threads=1", "name=other"] {
         assert_eq!(print(&[set]), print(&[]), "{set}");
     }
-    for set in ["seed=2", "planes.hub_height=100", "atmosphere.inversion_strength=2.0"] {
+    for set in
+        ["seed=2", "planes.hub_height=100", "atmosphere.inversion_strength=2.0", "box.subgrid=amd"]
+    {
         assert_ne!(print(&[set]), print(&[]), "{set}");
+    }
+}
+
+#[test]
+fn the_model_of_eddies_is_chosen() {
+    let subgrid = |overrides: &[&str]| {
+        let precursor = parsed(TEXT, overrides).unwrap().precursor;
+        precursor.settings(&precursor.plan()).subgrid
+    };
+    assert_eq!(subgrid(&[]), Subgrid::smagorinsky(0.16));
+    for model in SubgridModel::ALL.into_iter().filter(|model| model.needs_neighbours()) {
+        let set = format!("box.subgrid={}", model.word());
+        assert_eq!(subgrid(&[&set]), Subgrid::new(model));
     }
 }
 

@@ -49,7 +49,7 @@ impl Coefficients {
         let buoyancy = scaling.to_lattice_acceleration(per_kelvin).z;
         let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
         // ν_t² = C⁴ (S² − N²/Pr_t).
-        let stability = settings.smagorinsky.powi(4) * buoyancy / atmosphere.subgrid_prandtl;
+        let stability = settings.subgrid.constant.powi(4) * buoyancy / atmosphere.subgrid_prandtl;
         Self {
             turning: [(turn * share) as f32, (0.5 * turn * turn * share) as f32],
             geostrophic: [geostrophic.x as f32, geostrophic.y as f32],

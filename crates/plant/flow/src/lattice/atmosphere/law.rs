@@ -2,8 +2,9 @@
 //! grid does not resolve.
 
 use super::coefficients::{Coefficients, Level};
-use super::fields::{Field, Fields};
 use crate::lattice::collision::{Relaxation, twice_relaxation_time};
+use crate::lattice::eddies;
+use crate::lattice::fields::{Field, Fields, beyond};
 use crate::lattice::stencil::Moments;
 use crate::lattice::still::{Air, RowAir};
 use crate::simd::Simd;
@@ -39,6 +40,8 @@ pub(crate) struct StratifiedRow<S> {
     slope: Slope,
     wind: [*mut f32; 3],
     diffusivity: *mut f32,
+    /// Viscosity of eddies, where a pass of its own finds it, and diffusivity.
+    viscosity: Option<*const f32>,
     n_cells: usize,
     periodic: bool,
 }
@@ -93,6 +96,9 @@ impl Air for Stratified<'_> {
                 fields.row(Field::Wind(2), y, z),
             ],
             diffusivity: fields.row(Field::Diffusivity, y, z),
+            viscosity: fields
+                .hold(Field::Viscosity)
+                .then(|| fields.row(Field::Viscosity, y, z).cast_const()),
             n_cells: fields.n_cells[0],
             periodic: self.periodic,
         }
@@ -115,6 +121,9 @@ impl<S: Simd> RowAir<S> for StratifiedRow<S> {
                 force.store(place);
                 half.mul_add(force, state.velocity[axis]).store(self.wind[axis].add(x));
             }
+            if let Some(viscosity) = self.viscosity {
+                return eddies::rate(S::load(viscosity.add(x)), time);
+            }
             let [rate, diffusivity] = self.law.mixing(state, self.slope.at(x), time);
             diffusivity.store(self.diffusivity.add(x));
             rate
@@ -127,26 +136,6 @@ impl<S: Simd> RowAir<S> for StratifiedRow<S> {
         for row in [u, v, w, self.diffusivity] {
             // SAFETY: the row's own padding.
             unsafe { beyond(row, self.n_cells, 1, self.periodic) };
-        }
-    }
-}
-
-/// Gives the `reach` values before and behind a `row` of `n` cells those of the row's other end, or those of
-/// its last cells.
-///
-/// # Safety
-/// A row of the fields, written by this thread alone.
-#[inline(always)]
-pub(super) unsafe fn beyond(row: *mut f32, n: usize, reach: usize, periodic: bool) {
-    for offset in 0..reach {
-        let (first, last) = match periodic {
-            true => ((n - 1 - offset % n), offset % n),
-            false => (0, n - 1),
-        };
-        // SAFETY: handed through.
-        unsafe {
-            *row.wrapping_sub(1 + offset) = *row.add(first);
-            *row.add(n + offset) = *row.add(last);
         }
     }
 }

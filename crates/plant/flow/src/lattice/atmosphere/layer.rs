@@ -1,6 +1,7 @@
 //! What the levels of a box tell of the layer over its ground.
 
 use super::statistics::LevelStatistics;
+use std::ops::Range;
 
 /// Stress over the ground's where the layer ends, before the rest is added (–): the definition of the
 /// intercomparison of stable layers (Beare et al. 2006, Bound.-Layer Meteorol. 118, 247).
@@ -41,6 +42,31 @@ pub fn layer_depth(levels: &[LevelStatistics]) -> Option<f64> {
             height / (1.0 - LEAST_STRESS)
         })
     })
+}
+
+/// Levels at `heights` (m) with the mean of their stress, as a vector, over the instants at `places`.
+///
+/// The depth of a layer is that of the mean stress: waves and streaks of an instant carry momentum up and
+/// down beyond the layer, which a mean of the depths of instants would count. The columns are the flux of
+/// momentum along x and y that is resolved and that is not (m²/s²), of one instant after the other, levels
+/// fastest.
+pub fn mean_stress(
+    heights: &[f64],
+    [x, y, unresolved_x, unresolved_y]: [&[f64]; 4],
+    places: Range<usize>,
+) -> Vec<LevelStatistics> {
+    let n = places.len() as f64;
+    let mean = |column: &[f64], level: usize| {
+        let at = |place: usize| column[place * heights.len() + level];
+        places.clone().map(at).sum::<f64>() / n
+    };
+    let level = |(level, height): (usize, &f64)| LevelStatistics {
+        height: *height,
+        stress: [x, y].map(|column| mean(column, level)),
+        subgrid_stress: [unresolved_x, unresolved_y].map(|column| mean(column, level)),
+        ..LevelStatistics::default()
+    };
+    heights.iter().enumerate().map(level).collect()
 }
 
 /// A flux at the ground: that of the second and third level drawn on, for in the first the ground's part

@@ -1,6 +1,8 @@
 //! Reading wind, temperature and the fluxes that the grid does not resolve out of a row.
 
 use super::stratification::Stratification;
+use crate::lattice::eddies;
+use crate::lattice::fields::Field;
 use crate::lattice::layout::read_direction;
 use crate::lattice::probe::View;
 use crate::lattice::stencil::Stencil;
@@ -44,6 +46,11 @@ pub(crate) fn read_row<L: Stencil<Q>, const Q: usize>(
     let [y, z] = view.layout.place(row);
     let addresses: [usize; Q] = view.layout.addresses(view.parity, y, z);
     let (law, slope) = air.law::<Portable>(n_steps, [y, z], subgrid);
+    let told = |field| air.fields.row(field, y, z).cast_const();
+    let of_eddies = air
+        .fields
+        .hold(Field::Viscosity)
+        .then(|| [told(Field::Viscosity), told(Field::Diffusivity)]);
     let one = Portable::splat(1.0);
     let half = Portable::splat(0.5);
     state.temperature[..view.layout.n_cells[0]].copy_from_slice(air.temperature(n_steps, row));
@@ -59,7 +66,13 @@ pub(crate) fn read_row<L: Stencil<Q>, const Q: usize>(
             let moments = L::moments(&f);
             let time = Portable::load(times.as_ptr().add(x));
             let slope = slope.at::<Portable>(x);
-            let [rate, diffusivity] = law.mixing(&moments, slope, time);
+            let [rate, diffusivity] = match of_eddies {
+                Some([viscosity, diffusivity]) => [
+                    eddies::rate(Portable::load(viscosity.add(x)), time),
+                    Portable::load(diffusivity.add(x)),
+                ],
+                None => law.mixing(&moments, slope, time),
+            };
             let kept = half.sub_from(rate, one) * moments.per_density;
             for (component, column) in moments.velocity.iter().zip(&mut state.velocity) {
                 component.store(column.as_mut_ptr().add(x));

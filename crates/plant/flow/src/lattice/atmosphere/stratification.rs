@@ -1,11 +1,12 @@
 //! Temperature and what comes with it in the machine's memory, beside the populations of the air.
 
 use super::coefficients::{Coefficients, Level, levels};
-use super::fields::{Field, Fields, KEPT};
 use super::law::{Law, Slope, Stratified};
 use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
 use super::transport::{Ghosts, Transport, close_row};
+use crate::lattice::eddies::Warmth;
+use crate::lattice::fields::{Field, Fields, KEPT};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
 use crate::lattice::values::{read_values, write_values};
@@ -15,7 +16,7 @@ use std::ops::Range;
 
 /// The state of an atmosphere that is not in the populations of the air.
 pub(crate) struct Stratification {
-    fields: Fields,
+    pub(super) fields: Fields,
     coefficients: Coefficients,
     levels: Vec<Level>,
     plates: Option<[f32; 2]>,
@@ -67,6 +68,7 @@ impl Stratification {
         beyond: [Edge; 2],
     ) -> Option<Self> {
         let scaling = settings.scaling();
+        let eddies = settings.subgrid.model.needs_neighbours();
         let plates = match atmosphere.heating {
             Heating::Plates { ground, top } => {
                 Some([ground, top].map(|plate| (plate - atmosphere.reference_temperature) as f32))
@@ -74,7 +76,7 @@ impl Stratification {
             _ => None,
         };
         Some(Self {
-            fields: Fields::new(layout, sides, beyond)?,
+            fields: Fields::new(layout, sides, beyond, true, eddies)?,
             coefficients: Coefficients::new(atmosphere, settings, &scaling),
             levels: levels(atmosphere, settings, &scaling),
             plates,
@@ -120,6 +122,21 @@ impl Stratification {
             periodic: self.periodic,
             ground_stride: self.ground_stride,
         }
+    }
+
+    /// Its fields, to be cleared.
+    pub(crate) fn fields_mut(&mut self) -> &mut Fields {
+        &mut self.fields
+    }
+
+    /// What eddies of step number `n_steps` find.
+    pub(crate) fn warmth(&self, n_steps: u64) -> (&Fields, Warmth<'_>) {
+        let warmth = Warmth {
+            temperature: Fields::temperature(n_steps),
+            coefficients: &self.coefficients,
+            levels: &self.levels,
+        };
+        (&self.fields, warmth)
     }
 
     /// What acts on the cells of row (`y`, `z`), under Smagorinsky's factor `subgrid`, and the slope of their
@@ -190,13 +207,7 @@ impl Stratification {
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
         let means: Vec<f32> = self.levels.iter().map(|level| level.mean).collect();
         write_values(writer, bytes, &means)?;
-        let [_, n_y, n_z] = self.fields.n_cells;
-        for field in KEPT {
-            for row in 0..n_y * n_z {
-                write_values(writer, bytes, self.fields.cells(field, row % n_y, row / n_y))?;
-            }
-        }
-        Ok(())
+        self.kept().try_for_each(|field| self.fields.write(field, writer, bytes))
     }
 
     /// Goes on from what [`write`](Self::write) wrote.
@@ -207,14 +218,20 @@ impl Stratification {
             level.mean = mean;
         }
         let [_, n_y, n_z] = self.fields.n_cells;
-        for field in KEPT {
+        for field in self.kept() {
+            self.fields.read(field, reader, bytes)?;
             for row in 0..n_y * n_z {
-                let [y, z] = [row % n_y, row / n_y];
-                read_values(reader, bytes, self.fields.cells_mut(field, y, z))?;
-                self.close(field, y, z);
+                self.close(field, row % n_y, row / n_y);
             }
         }
         Ok(())
+    }
+
+    /// Fields that outlast a step.
+    fn kept(&self) -> impl Iterator<Item = Field> + use<> {
+        let eddies = self.fields.hold(Field::Viscosity);
+        let of_eddies = eddies.then_some([Field::Viscosity, Field::Diffusivity]);
+        KEPT.into_iter().chain(of_eddies.into_iter().flatten())
     }
 
     /// Gives what lies beyond the ends of row (`y`, `z`) of `field` its values.

@@ -10,9 +10,8 @@
 //! change of its own rows only.
 
 use super::coefficients::Level;
-use super::fields::{Field, Fields, REACH};
-use super::law::beyond;
 use super::stratification::HeatShare;
+use crate::lattice::fields::{Field, Fields, REACH, beyond};
 use crate::lattice::layout::Edge;
 use crate::simd::{MAXIMUM_LANES, Simd};
 use std::ops::Range;

@@ -3,6 +3,7 @@
 use crate::lattice::cell_box::CellBox;
 use crate::lattice::layout::Edge;
 use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
+use crate::lattice::subgrid::SubgridModel;
 use basis::Vector3;
 use thiserror::Error;
 
@@ -65,6 +66,11 @@ pub enum RefinementError {
     /// Temperature is not carried from grid to grid.
     #[error("air with temperature cannot be refined: leave out the boxes, or the atmosphere")]
     Atmosphere,
+    /// Nor is the wind of neighbours that a model of eddies needs.
+    #[error(
+        "the subgrid model {} needs the wind of neighbours, which boxes of finer cells do not hand each other: take smagorinsky, or leave out the boxes", .0.word()
+    )]
+    Subgrid(SubgridModel),
 }
 
 /// What lies beyond the first and the last cell along each axis: none where populations are given, by an
@@ -76,7 +82,25 @@ pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 /// # Errors
 /// [`RefinementError`] for the first that does not.
 pub fn check(settings: &LatticeSettings, boxes: &[Refinement]) -> Result<(), RefinementError> {
+    check_air(settings, boxes)?;
     check_in(settings.n_cells, &beyond(settings), boxes)
+}
+
+/// Checks that the air of `settings` can be in boxes at all, if there are any.
+pub(super) fn check_air(
+    settings: &LatticeSettings,
+    boxes: &[Refinement],
+) -> Result<(), RefinementError> {
+    if boxes.is_empty() {
+        return Ok(());
+    }
+    if settings.atmosphere.is_some() {
+        return Err(RefinementError::Atmosphere);
+    }
+    match settings.subgrid.model {
+        model if model.needs_neighbours() => Err(RefinementError::Subgrid(model)),
+        _ => Ok(()),
+    }
 }
 
 fn check_in(

@@ -9,9 +9,10 @@ mod waves;
 use super::boxes::beyond;
 use super::*;
 use crate::WindField;
-use crate::lattice::settings::{DEFAULT_SMAGORINSKY, Ends, Ground, Sides, Stencil};
+use crate::lattice::settings::{Ends, Ground, Sides, Stencil};
 use crate::lattice::stencil::{D3Q19, Stencil as _};
 use crate::lattice::stencil27::D3Q27;
+use crate::lattice::subgrid::{DEFAULT_SMAGORINSKY, Subgrid};
 use crate::lattice::tests::{Wind, periodic_box};
 
 fn cells(first_cell: [usize; 3], n_cells: [usize; 3]) -> Refinement {

@@ -51,6 +51,26 @@ fn bits(air: &Lattice) -> Vec<u32> {
     bits
 }
 
+/// Models of eddies, each between both kinds of ends.
+fn cases() -> impl Iterator<Item = (SubgridModel, Ends)> {
+    let ends = [Ends::Periodic, Ends::InletOutlet];
+    SubgridModel::ALL.into_iter().flat_map(move |model| ends.map(|ends| (model, ends)))
+}
+
+/// `settings` with `model`.
+fn with(model: SubgridModel, settings: LatticeSettings) -> LatticeSettings {
+    LatticeSettings { subgrid: Subgrid::new(model), ..settings }
+}
+
+/// What the levels tell of fluxes that are not resolved, bit by bit.
+fn fluxes(air: &Lattice) -> Vec<u64> {
+    let of_level = |level: &LevelStatistics| {
+        let [uw, vw] = level.subgrid_stress;
+        [uw, vw, level.subgrid_heat_flux].map(f64::to_bits)
+    };
+    air.level_statistics().iter().flat_map(of_level).collect()
+}
+
 /// Heat of all cells: the sum of mass times temperature over the reference (K).
 fn heat(air: &Lattice) -> f64 {
     let [n_x, n_y, n_z] = air.n_cells();
@@ -68,9 +88,9 @@ fn heat(air: &Lattice) -> f64 {
 
 #[test]
 fn the_number_of_threads_changes_no_bit_of_an_atmosphere() {
-    for ends in [Ends::Periodic, Ends::InletOutlet] {
+    for (model, ends) in cases() {
         let run = |threads| {
-            let mut air = windy(stratified(threads, Backend::detect(), ends));
+            let mut air = windy(with(model, stratified(threads, Backend::detect(), ends)));
             let push = |x, z| {
                 let position = Vector3::new(x, 45.0, z);
                 PointForce::of_body(position, Vector3::new(-3e4, 0.0, 0.0), 20.0)
@@ -80,7 +100,7 @@ fn the_number_of_threads_changes_no_bit_of_an_atmosphere() {
         };
         let alone = run(1);
         for threads in [2, 3, 5, 13] {
-            assert!(run(threads) == alone, "{ends:?}: {threads} threads");
+            assert!(run(threads) == alone, "{model:?}, {ends:?}: {threads} threads");
         }
     }
 }
@@ -104,18 +124,20 @@ fn back_ends_agree_on_an_atmosphere() {
 
 #[test]
 fn an_atmosphere_read_back_goes_on_with_the_same_bits() {
-    for ends in [Ends::Periodic, Ends::InletOutlet] {
-        let settings = stratified(2, Backend::detect(), ends);
+    for (model, ends) in cases() {
+        let settings = with(model, stratified(2, Backend::detect(), ends));
         let mut air = windy(settings.clone());
         // Not a multiple of the steps after which stability is found anew.
         air.advance(1.3, &[]).expect("no divergence");
         let mut state = Vec::new();
         air.write_state(&mut state).expect("memory");
+        let kept = fluxes(&air);
         air.advance(3.0, &[]).expect("no divergence");
         let mut other = windy(LatticeSettings { threads: Some(29), ..settings });
         other.read_state(&mut state.as_slice()).expect("a state of this grid");
+        assert!(fluxes(&other) == kept, "{model:?}, {ends:?}: what the levels tell at once");
         other.advance(3.0, &[]).expect("no divergence");
-        assert!(bits(&air) == bits(&other), "{ends:?}");
+        assert!(bits(&air) == bits(&other), "{model:?}, {ends:?}");
     }
 }
 
@@ -140,8 +162,8 @@ fn a_checkpoint_has_the_same_bytes_from_any_number_of_threads() {
 
 #[test]
 fn an_engine_that_starts_again_has_forgotten_what_was() {
-    for ends in [Ends::Periodic, Ends::InletOutlet] {
-        let settings = stratified(2, Backend::detect(), ends);
+    for (model, ends) in cases() {
+        let settings = with(model, stratified(2, Backend::detect(), ends));
         let wind = Wind(|_, x: Vector3| Vector3::new(8.0 + (0.05 * x.y).sin(), 0.3, 0.1));
         let state = |runs: usize| {
             let mut engine = Cpu::new(&settings).expect("sound settings");
@@ -160,7 +182,7 @@ fn an_engine_that_starts_again_has_forgotten_what_was() {
             }
             bits
         };
-        assert!(state(1) == state(2), "{ends:?}");
+        assert!(state(1) == state(2), "{model:?}, {ends:?}");
     }
 }
 

@@ -12,7 +12,7 @@ fn duct(
 ) -> Lattice {
     let mut settings = periodic_box(n_cells, 1e-6);
     settings.ends = Ends::InletOutlet;
-    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    settings.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     lattice(settings, wind)
 }
 
@@ -95,7 +95,7 @@ fn the_wind_that_enters_has_its_profile() {
     let profile = |z: f64| 0.06 + 0.04 * (z / 20.0).powf(0.2);
     let mut settings = periodic_box([48, 8, 20], 1e-6);
     (settings.ends, settings.ground) = (Ends::InletOutlet, Ground::Slip);
-    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    settings.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     let mut air = lattice(settings, move |_, x| Vector3::new(profile(x.z + 0.5), 0.0, 0.0));
     air.advance(2000.0, &[]).expect("no divergence");
     for x in [0.0, 10.0, 30.0] {
@@ -119,7 +119,7 @@ fn a_wind_that_veers_keeps_its_directions() {
     };
     let mut settings = periodic_box([48, 8, 20], 1e-6);
     (settings.ends, settings.ground) = (Ends::InletOutlet, Ground::Slip);
-    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    settings.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     let mut air = lattice(settings, move |_, x| wind(x.z));
     air.advance(2000.0, &[]).expect("no divergence");
     for x in [0.0, 10.0, 30.0] {

@@ -35,7 +35,7 @@ impl Plain {
     fn new(settings: &LatticeSettings) -> Self {
         let scaling = settings.scaling();
         let viscosity = scaling.to_lattice_viscosity(settings.kinematic_viscosity);
-        let subgrid = (SUBGRID_FACTOR * settings.smagorinsky.powi(2)) as f32;
+        let subgrid = (SUBGRID_FACTOR * settings.subgrid.constant.powi(2)) as f32;
         Self {
             n_cells: settings.n_cells,
             populations: vec![[0.0; 19]; settings.cells()],
@@ -163,7 +163,7 @@ impl Engine for Plain {
 /// Air that swirls, on the processor's engine and on the plain one.
 fn both() -> [Lattice; 2] {
     let mut settings = periodic_box([20, 9, 7], 1e-3);
-    settings.smagorinsky = 0.12;
+    settings.subgrid = Subgrid::smagorinsky(0.12);
     settings.backend = Some(Backend::Portable);
     let swirl = || {
         Arc::new(Wind(|_: f64, x: Vector3| {

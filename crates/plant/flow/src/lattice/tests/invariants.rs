@@ -109,7 +109,7 @@ fn back_ends_agree_to_rounding() {
 #[test]
 fn mass_stays() {
     let mut settings = periodic_box([16, 16, 16], 1e-8);
-    settings.smagorinsky = DEFAULT_SMAGORINSKY;
+    settings.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     let k = std::f64::consts::TAU / 16.0;
     let mut air = lattice(settings, move |_, x| {
         Vector3::new(0.05 + 0.04 * (k * x.y).sin(), 0.04 * (k * x.z).sin(), 0.04 * (k * x.x).sin())

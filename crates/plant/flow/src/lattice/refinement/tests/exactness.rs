@@ -65,7 +65,7 @@ fn a_uniform_wind_crosses_unchanged() {
     let wind = Vector3::new(0.06, -0.03, 0.02);
     for stencil in [Stencil::D3Q19, Stencil::D3Q27] {
         let mut settings = periodic_box([14, 12, 12], 1e-4);
-        (settings.stencil, settings.smagorinsky) = (stencil, DEFAULT_SMAGORINSKY);
+        (settings.stencil, settings.subgrid) = (stencil, Subgrid::smagorinsky(DEFAULT_SMAGORINSKY));
         let mut place = cells([3, 3, 3], [7, 6, 5]);
         place.within.push(cells([4, 3, 3], [5, 6, 4]));
         let mut air = refined(settings, &[place], move |_, _| wind);
@@ -79,7 +79,7 @@ fn a_uniform_wind_crosses_unchanged() {
 /// Air in disorder, boxes within boxes in it.
 fn disorder(stencil: Stencil) -> Refined {
     let mut settings = periodic_box([20, 16, 14], 1e-5);
-    (settings.stencil, settings.smagorinsky) = (stencil, DEFAULT_SMAGORINSKY);
+    (settings.stencil, settings.subgrid) = (stencil, Subgrid::smagorinsky(DEFAULT_SMAGORINSKY));
     let mut one = cells([3, 3, 3], [8, 8, 7]);
     one.within.push(cells([4, 5, 3], [8, 7, 6]));
     let other = cells([14, 5, 4], [3, 4, 6]);
@@ -155,7 +155,8 @@ fn a_state_between_two_steps_of_the_base_goes_on_to_the_same_bits() {
 fn nobody_sees_air_from_beneath_a_box() {
     // A body in the box holds the air back; beneath the box it goes on as it came.
     let mut settings = periodic_box([30, 12, 12], 1e-5);
-    (settings.ends, settings.smagorinsky) = (Ends::InletOutlet, DEFAULT_SMAGORINSKY);
+    (settings.ends, settings.subgrid) =
+        (Ends::InletOutlet, Subgrid::smagorinsky(DEFAULT_SMAGORINSKY));
     let mut air = refined(settings, &[cells([8, 2, 2], [8, 8, 8])], |_, _| Vector3::X * 0.1);
     let force = Vector3::X * -0.04;
     let body = PointForce::of_body(Vector3::new(12.0, 6.0, 6.0), force, 1.5);
@@ -182,7 +183,7 @@ fn nobody_sees_air_from_beneath_a_box() {
 #[test]
 fn a_box_on_a_slippery_ground_keeps_what_can_be_kept() {
     let mut settings = periodic_box([16, 12, 10], 1e-4);
-    (settings.ground, settings.smagorinsky) = (Ground::Slip, DEFAULT_SMAGORINSKY);
+    (settings.ground, settings.subgrid) = (Ground::Slip, Subgrid::smagorinsky(DEFAULT_SMAGORINSKY));
     let mut place = cells([4, 3, 0], [7, 6, 4]);
     place.within.push(cells([4, 3, 0], [5, 6, 3]));
     let mut air = refined(settings, &[place], |_, x| {

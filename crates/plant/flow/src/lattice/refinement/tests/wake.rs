@@ -8,7 +8,7 @@ fn disc(halved: bool, boxes: &[Refinement]) -> Vec<Vector3> {
     let n = [40, 16, 16];
     let mut coarse = periodic_box(n, 1e-5);
     coarse.ends = Ends::InletOutlet;
-    coarse.smagorinsky = DEFAULT_SMAGORINSKY;
+    coarse.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     let settings = if halved { fine(&coarse) } else { coarse.clone() };
     let wind = Vector3::new(0.1, 0.0, 0.0);
     let mut air = refined(settings, boxes, move |_, _| wind);

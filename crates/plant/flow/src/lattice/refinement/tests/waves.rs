@@ -62,7 +62,7 @@ fn vortex(position: Vector3, centre: Vector3, radius: f64) -> Vector3 {
 /// The vortex on the base cells after `duration` (s), as the means over them.
 fn carried(halved: bool, boxes: &[Refinement], radius: f64, duration: f64) -> Vec<Vector3> {
     let mut coarse = periodic_box([112, 48, 1], 1e-5);
-    coarse.smagorinsky = DEFAULT_SMAGORINSKY;
+    coarse.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
     let wind = Vector3::new(0.1, 0.0, 0.0);
     let settings = if halved { fine(&coarse) } else { coarse.clone() };
     let mut air = refined(settings, boxes, move |_, x| {
