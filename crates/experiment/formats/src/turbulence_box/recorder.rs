@@ -107,9 +107,9 @@ impl WindRecorder {
     /// number of steps, repetition and speed aside, for a hub at `hub_height` (m); `description` goes into
     /// the file.
     ///
-    /// The file's hub speed, with which its planes are carried along, is the mean in the row nearest hub
-    /// height where `carried` says. The planes stay beside it for a run that is killed before it can say that
-    /// it is complete; nothing may be written after.
+    /// The file's hub speed, with which its planes are carried along, is the mean at hub height where
+    /// `carried` says, linear between the rows. The planes stay beside it for a run that is killed before it
+    /// can say that it is complete; nothing may be written after.
     ///
     /// # Errors
     /// [`FileError::System`], and [`FileError::Content`] when fewer than two planes came, or wind that is no
@@ -130,13 +130,13 @@ impl WindRecorder {
         if n_steps < 2 {
             return Err(wrong(format!("{n_steps} planes are too few for a record")));
         }
-        let row = ((hub_height - grid.first[1]) / grid.spacing[1]).round().max(0.0) as usize;
-        let start = row.min(grid.n_z - 1) * grid.n_y;
-        let hub = match carried {
-            Carried::Middle => start + grid.n_y / 2..start + grid.n_y / 2 + 1,
-            Carried::Width => start..start + grid.n_y,
+        let columns = match carried {
+            Carried::Middle => grid.n_y / 2..grid.n_y / 2 + 1,
+            Carried::Width => 0..grid.n_y,
         };
-        let n_values = (n_steps * hub.len()) as f64;
+        let (rows, weight) = grid.rows_at(hub_height);
+        let rows = rows.map(|row| row * grid.n_y + columns.start..row * grid.n_y + columns.end);
+        let n_values = (n_steps * columns.len()) as f64;
         let mut ranges = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         let (mut speed, mut finite) = (0.0, true);
         self.each_plane(n_steps, |wind| {
@@ -147,8 +147,10 @@ impl WindRecorder {
                     *range = [range[0].min(value), range[1].max(value)];
                 }
             }
-            let row = &wind[hub.clone()];
-            speed += row.iter().map(|point| f64::from(point[0])).sum::<f64>() / n_values;
+            let [below, above] = rows.clone().map(|row| {
+                wind[row].iter().map(|point| f64::from(point[0])).sum::<f64>() / n_values
+            });
+            speed += below + weight * (above - below);
             Ok(())
         })?;
         if !finite || speed <= 0.0 {
@@ -245,6 +247,10 @@ mod tests {
                 assert!((read - written).abs() < 1e-4, "{read} {written}");
             }
         }
+        // A quarter of the way from the third row to the fourth.
+        recorder.finish(&GRID, 153.75, Carried::Middle, "between rows").unwrap();
+        let between = turbsim::open(&path).unwrap().grid().speed;
+        assert!((between - hub - 0.25 * 0.3).abs() < 1e-5, "{between} and {hub}");
         recorder.finish(&GRID, 150.0, Carried::Width, "wind of an atmosphere").unwrap();
         let row = (0..14).flat_map(|step| plane(step)[6..9].to_vec());
         let mean = row.map(|wind| f64::from(wind[0])).sum::<f64>() / 42.0;

@@ -1,6 +1,6 @@
 //! What the layer as a whole did over time.
 
-use flow::lattice::atmosphere::{LevelStatistics, layer_depth};
+use flow::lattice::atmosphere::{layer_depth, mean_stress};
 use formats::netcdf::StoredStatistics;
 use report::{Along, TrackFigure, TrackLine, TrackRow};
 
@@ -65,18 +65,7 @@ fn depths(statistics: &StoredStatistics) -> (Vec<f64>, Vec<f64>) {
     starts
         .filter_map(|start| {
             let places = start..(start + n_each).min(times.len());
-            let mean = |column: &[f64], level: usize| {
-                let at = places.clone().map(|place| column[place * heights.len() + level]);
-                at.sum::<f64>() / places.len() as f64
-            };
-            let [uw, vw, uw_unresolved, vw_unresolved] = columns;
-            let level = |(level, height): (usize, &f64)| LevelStatistics {
-                height: *height,
-                stress: [mean(uw, level), mean(vw, level)],
-                subgrid_stress: [mean(uw_unresolved, level), mean(vw_unresolved, level)],
-                ..LevelStatistics::default()
-            };
-            let levels: Vec<LevelStatistics> = heights.iter().enumerate().map(level).collect();
+            let levels = mean_stress(heights, columns, places.clone());
             let middle = 0.5 * (times[places.start] + times[places.end - 1]);
             Some((middle, layer_depth(&levels)?))
         })

@@ -2,9 +2,9 @@
 
 use super::levels::{
     FRICTION, GEOSTROPHIC, HEAT_FLUX, HUB_DIRECTION, HUB_SPEED, INTENSITY, Instant, OF_LAYER,
-    OF_LEVELS, RESOLVED_STRESS, TEMPERATURE, UNRESOLVED_STRESS, depth, direction, wind,
+    OF_LEVELS, STRESS, TEMPERATURE, depth, direction, wind,
 };
-use flow::lattice::atmosphere::LevelStatistics;
+use flow::lattice::atmosphere::{LevelStatistics, mean_stress};
 use formats::FileError;
 use formats::netcdf::{Column, TimeHeight, write_statistics};
 use formats::records::{Drift, ProfileRow};
@@ -119,9 +119,8 @@ impl History {
         values.iter().sum::<f64>() / values.len() as f64
     }
 
-    /// Friction velocity (m/s) and depth of the layer (m) after `from` and up to `to` (s). The depth is that
-    /// of the mean stress: waves and streaks of an instant carry momentum up and down beyond the layer, which
-    /// a mean of the depths of instants would count.
+    /// Friction velocity (m/s), and depth of the layer in the mean stress (m), after `from` and up to `to`
+    /// (s).
     pub(super) fn layer(&self, from: f64, to: f64) -> [f64; 2] {
         [self.mean(FRICTION, from, to), depth(&self.mean_stress(from, to))]
     }
@@ -129,13 +128,7 @@ impl History {
     /// Heights of the levels with the mean of their stress, as a vector, after `from` and up to `to` (s).
     fn mean_stress(&self, from: f64, to: f64) -> Vec<LevelStatistics> {
         let places = self.places(from, to);
-        let level = |(level, height): (usize, &f64)| LevelStatistics {
-            height: *height,
-            stress: RESOLVED_STRESS.map(|which| self.level_mean(which, level, &places)),
-            subgrid_stress: UNRESOLVED_STRESS.map(|which| self.level_mean(which, level, &places)),
-            ..LevelStatistics::default()
-        };
-        self.heights.iter().enumerate().map(level).collect()
+        mean_stress(&self.heights, STRESS.map(|which| self.profiles[which].as_slice()), places)
     }
 
     /// Mean of a quantity of a level over the times at `places`.

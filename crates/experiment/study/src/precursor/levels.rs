@@ -35,8 +35,7 @@ pub(super) struct OfLayer {
 pub(super) const INTENSITY: usize = 4;
 pub(super) const TEMPERATURE: usize = 5;
 pub(super) const HEAT_FLUX: usize = 7;
-pub(super) const RESOLVED_STRESS: [usize; 2] = [11, 12];
-pub(super) const UNRESOLVED_STRESS: [usize; 2] = [13, 14];
+pub(super) const STRESS: [usize; 4] = [11, 12, 13, 14];
 
 macro_rules! of_level {
     ($name:literal, $unit:literal, $meaning:literal, $of:expr) => {

@@ -142,9 +142,8 @@ pub(super) fn at_hub(
 ) -> Result<Result<AtHub, InflowError>, FileError> {
     let mut planes = turbulence_box::open(path)?;
     let grid = planes.grid();
-    let place = ((hub_height - grid.first[1]) / grid.spacing[1]).clamp(0.0, grid.n_z as f64 - 1.0);
-    let (row, weight) = (place.floor() as usize, place.fract());
-    let start = [row, (row + 1).min(grid.n_z - 1)].map(|row| row * grid.n_y);
+    let (rows, weight) = grid.rows_at(hub_height);
+    let start = rows.map(|row| row * grid.n_y);
     let mut plane = vec![[0.0; 3]; grid.n_y * grid.n_z];
     let (mut u, mut v, mut uu) = (0.0, 0.0, 0.0);
     for step in 0..grid.n_steps {

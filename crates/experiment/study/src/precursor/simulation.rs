@@ -23,6 +23,8 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(600);
 const RUN: &str = "run";
 const HISTORY: &str = "history";
 const AIR: &str = "air";
+/// Of what a checkpoint holds: the program's, and that of the sections above, which counts their changes.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (state 2)");
 
 /// How a precursor ended.
 pub(super) enum Ending {
@@ -100,7 +102,7 @@ impl<'a> Simulation<'a> {
     /// What a checkpoint is known by.
     fn identity<'b>(text: &'b str, job: &'b Job, backend: &'b str) -> Identity<'b> {
         let run = &job.file.precursor.name;
-        Identity { case_text: text, run, version: env!("CARGO_PKG_VERSION"), backend }
+        Identity { case_text: text, run, version: VERSION, backend }
     }
 
     /// On return it stands where its checkpoint was written.

@@ -49,6 +49,15 @@ impl PlaneGrid {
         [self.first[1], self.first[1] + (self.n_z - 1) as f64 * self.spacing[1]]
     }
 
+    /// The rows below and above `height` (m), and the share that the upper one has there (–); beyond the rows
+    /// the nearest one alone.
+    pub fn rows_at(&self, height: f64) -> ([usize; 2], f64) {
+        let highest = self.n_z - 1;
+        let place = ((height - self.first[1]) / self.spacing[1]).clamp(0.0, highest as f64);
+        let row = place.floor() as usize;
+        ([row, (row + 1).min(highest)], place.fract())
+    }
+
     /// Time (s) from the first plane to the last, or until the first returns.
     pub fn length(&self) -> f64 {
         let n_intervals = if self.repeats { self.n_steps } else { self.n_steps - 1 };
