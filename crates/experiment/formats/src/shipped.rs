@@ -196,6 +196,11 @@ pub const PRECURSORS: &[ShippedPrecursor] = &[
         file: include_str!("../../../../cases/precursor-seed-000.toml"),
         minutes: 290.0,
     },
+    ShippedPrecursor {
+        name: "precursor-berg",
+        file: include_str!("../../../../cases/precursor-berg.toml"),
+        minutes: 200.0,
+    },
 ];
 
 impl ShippedPrecursor {
