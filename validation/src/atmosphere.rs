@@ -1,10 +1,12 @@
 //! Air with temperature on a turning earth against closed forms: conduction, waves, Ekman's layer, the onset
 //! of convection.
 
+mod capped;
 mod carried;
 mod stable;
 
-pub use stable::stable_boundary_layer;
+pub use capped::capped_boundary_layer;
+pub use stable::{stable_boundary_layer, stable_subgrid_models};
 
 use crate::Row;
 use crate::folds::worst;

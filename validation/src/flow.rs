@@ -1,15 +1,17 @@
 //! The lattice against closed forms: decay, conservation, momentum theory, the logarithmic law, an open
-//! outlet, boxes of finer cells.
+//! outlet, boxes of finer cells, models of unresolved eddies.
 
 mod disc;
 mod ground;
 mod isotropy;
 mod refinement;
+mod subgrid;
 
 pub use disc::momentum_theory;
 pub use ground::log_profile;
 pub use isotropy::isotropy;
 pub use refinement::refinement;
+pub use subgrid::subgrid_models;
 
 use crate::Row;
 use crate::folds::worst;
