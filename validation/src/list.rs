@@ -148,8 +148,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "capped-boundary-layer",
-        about: "a neutral layer under its own inversion on cells of 20 m against published simulations on 5 m",
-        cost: Cost::Minutes(20),
+        about: "a neutral layer under its own inversion on cells of 10 m against published simulations on 5 m",
+        cost: Cost::Minutes(85),
         run: atmosphere::capped_boundary_layer,
         pictures: None,
         page: "atmosphere",

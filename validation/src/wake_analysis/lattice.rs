@@ -117,7 +117,7 @@ impl Sums {
             std::array::from_fn(|axis| slopes(&self.grid, &velocity[component], axis))
         });
         let settings = air.settings();
-        let length = settings.smagorinsky * settings.spacing;
+        let length = settings.subgrid.constant * settings.spacing;
         for index in 0..self.positions.len() {
             let strain = |i: usize, j: usize| 0.5 * (gradient[i][j][index] + gradient[j][i][index]);
             let squares: f64 =
