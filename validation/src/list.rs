@@ -1,12 +1,13 @@
 //! All validations, in the order in which they are listed.
 
+mod air;
 mod elsewhere;
 mod tunnel;
 mod vortices;
 
 use crate::{
-    Cost, Validation, actuator_line, aeroelastic, atmosphere, blade_element, flow, helix, inflow,
-    meandering, memory, phase_estimator, refined_rotor, resume, structure,
+    Cost, Validation, actuator_line, aeroelastic, blade_element, flow, helix, inflow, meandering,
+    memory, phase_estimator, refined_rotor, resume, structure,
 };
 
 pub use elsewhere::ELSEWHERE;
@@ -119,42 +120,10 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "flow",
         recorded: include_str!("../recorded/refined-rotor.toml"),
     },
-    Validation {
-        name: "atmosphere",
-        about: "air with temperature on a turning earth against closed forms: conduction, inertial and internal waves, Ekman's layer, onset of convection",
-        cost: Cost::UnderAMinute,
-        run: atmosphere::atmosphere,
-        pictures: None,
-        page: "atmosphere",
-        recorded: include_str!("../recorded/atmosphere.toml"),
-    },
-    Validation {
-        name: "stable-boundary-layer",
-        about: "the stable boundary layer of GABLS1 on cells of 6.25 m beside the published spread of simulations",
-        cost: Cost::Minutes(25),
-        run: atmosphere::stable_boundary_layer,
-        pictures: None,
-        page: "atmosphere",
-        recorded: include_str!("../recorded/stable-boundary-layer.toml"),
-    },
-    Validation {
-        name: "stable-subgrid-models",
-        about: "the same on cells of 12.5 m with each model of unresolved eddies",
-        cost: Cost::Minutes(8),
-        run: atmosphere::stable_subgrid_models,
-        pictures: None,
-        page: "atmosphere",
-        recorded: include_str!("../recorded/stable-subgrid-models.toml"),
-    },
-    Validation {
-        name: "capped-boundary-layer",
-        about: "a neutral layer under its own inversion on cells of 10 m against published simulations on 5 m",
-        cost: Cost::Minutes(85),
-        run: atmosphere::capped_boundary_layer,
-        pictures: None,
-        page: "atmosphere",
-        recorded: include_str!("../recorded/capped-boundary-layer.toml"),
-    },
+    air::ATMOSPHERE,
+    air::STABLE,
+    air::STABLE_MODELS,
+    air::CAPPED,
     Validation {
         name: "helix",
         about: "power of two turbines against amplitude and sense of the helix, beside published large-eddy figures",

@@ -26,7 +26,7 @@ pub fn capped_boundary_layer() -> Vec<Row> {
 
 fn rows(result: &PrecursorResult) -> Vec<Row> {
     let row = |what: String, measured, expected, within, unit| Row {
-        what: format!("capped boundary layer, 10 m cells, 24 to 25.4 h: {what}"),
+        what: format!("capped boundary layer, 10 m cells, 18 to 19.4 h: {what}"),
         measured,
         expected,
         tolerance: Within(within),

@@ -29,6 +29,12 @@ pub(crate) fn relaxation_rate<S: Simd>(before: &Moments<S>, relaxation: &Relaxat
     S::splat(2.0).divide(twice_relaxation_time(before, relaxation))
 }
 
+/// Rate at which stress relaxes with this `viscosity` of eddies and `time` for the air's own.
+#[inline(always)]
+pub(crate) fn relaxation_rate_of<S: Simd>(viscosity: S, time: S) -> S {
+    S::splat(1.0).divide(S::splat(3.0).mul_add(viscosity, time))
+}
+
 /// Twice the time over which the stress of a cell in state `before` relaxes, in steps.
 #[inline(always)]
 pub(crate) fn twice_relaxation_time<S: Simd>(before: &Moments<S>, relaxation: &Relaxation<S>) -> S {

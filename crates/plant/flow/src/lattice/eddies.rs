@@ -13,13 +13,13 @@ mod models;
 mod noted;
 mod slopes;
 
-use super::atmosphere::coefficients::{Coefficients, Level};
+use super::atmosphere::stratification::Warmth;
 use super::fields::{Field, Fields, beyond};
 use super::settings::{Ends, Ground, LatticeSettings};
 use super::subgrid::SubgridModel;
 use crate::simd::Simd;
 use models::{Heat, Viscosity};
-pub(crate) use noted::{Noted, rate};
+pub(crate) use noted::Noted;
 use slopes::Slopes;
 use std::ops::Range;
 
@@ -65,15 +65,6 @@ impl<'a> Mixing<'a> {
         let n_y = self.fields.n_cells[1];
         self.fields.cells(Field::Viscosity, row % n_y, row / n_y)
     }
-}
-
-/// The temperature that the pass finds.
-pub(crate) struct Warmth<'a> {
-    /// Where it lies.
-    pub(super) temperature: Field,
-    pub(super) coefficients: &'a Coefficients,
-    /// Levels, from the ground up.
-    pub(super) levels: &'a [Level],
 }
 
 /// Finds viscosity, and diffusivity where there is temperature, of the cells of the rows of `range`.

@@ -2,8 +2,7 @@
 //! grid does not resolve.
 
 use super::coefficients::{Coefficients, Level};
-use crate::lattice::collision::{Relaxation, twice_relaxation_time};
-use crate::lattice::eddies;
+use crate::lattice::collision::{Relaxation, relaxation_rate_of, twice_relaxation_time};
 use crate::lattice::fields::{Field, Fields, beyond};
 use crate::lattice::stencil::Moments;
 use crate::lattice::still::{Air, RowAir};
@@ -122,7 +121,7 @@ impl<S: Simd> RowAir<S> for StratifiedRow<S> {
                 half.mul_add(force, state.velocity[axis]).store(self.wind[axis].add(x));
             }
             if let Some(viscosity) = self.viscosity {
-                return eddies::rate(S::load(viscosity.add(x)), time);
+                return relaxation_rate_of(S::load(viscosity.add(x)), time);
             }
             let [rate, diffusivity] = self.law.mixing(state, self.slope.at(x), time);
             diffusivity.store(self.diffusivity.add(x));

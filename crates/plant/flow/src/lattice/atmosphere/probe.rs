@@ -1,7 +1,7 @@
 //! Reading wind, temperature and the fluxes that the grid does not resolve out of a row.
 
 use super::stratification::Stratification;
-use crate::lattice::eddies;
+use crate::lattice::collision::relaxation_rate_of;
 use crate::lattice::fields::Field;
 use crate::lattice::layout::read_direction;
 use crate::lattice::probe::View;
@@ -68,7 +68,7 @@ pub(crate) fn read_row<L: Stencil<Q>, const Q: usize>(
             let slope = slope.at::<Portable>(x);
             let [rate, diffusivity] = match of_eddies {
                 Some([viscosity, diffusivity]) => [
-                    eddies::rate(Portable::load(viscosity.add(x)), time),
+                    relaxation_rate_of(Portable::load(viscosity.add(x)), time),
                     Portable::load(diffusivity.add(x)),
                 ],
                 None => law.mixing(&moments, slope, time),

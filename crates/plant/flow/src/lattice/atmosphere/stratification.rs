@@ -5,7 +5,6 @@ use super::law::{Law, Slope, Stratified};
 use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
 use super::transport::{Ghosts, Transport, close_row};
-use crate::lattice::eddies::Warmth;
 use crate::lattice::fields::{Field, Fields, KEPT};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
@@ -30,6 +29,15 @@ pub(crate) struct Stratification {
     spacing: f64,
     /// Sum of the temperatures of every row after the last step.
     sums: Vec<f32>,
+}
+
+/// The temperature that the pass over unresolved eddies finds.
+pub(crate) struct Warmth<'a> {
+    /// Where it lies.
+    pub(crate) temperature: Field,
+    pub(crate) coefficients: &'a Coefficients,
+    /// Levels, from the ground up.
+    pub(crate) levels: &'a [Level],
 }
 
 /// What one thread owns of it.

@@ -1,5 +1,6 @@
 //! Air without temperature whose cells tell their wind, and find their eddies' viscosity.
 
+use crate::lattice::collision::relaxation_rate_of;
 use crate::lattice::fields::{Field, Fields, beyond};
 use crate::lattice::stencil::Moments;
 use crate::lattice::still::{Air, RowAir};
@@ -45,7 +46,7 @@ impl<S: Simd> RowAir<S> for NotedRow {
             for (component, row) in state.velocity.iter().zip(self.wind) {
                 component.store(row.add(x));
             }
-            rate(S::load(self.viscosity.add(x)), time)
+            relaxation_rate_of(S::load(self.viscosity.add(x)), time)
         }
     }
 
@@ -56,10 +57,4 @@ impl<S: Simd> RowAir<S> for NotedRow {
             unsafe { beyond(row, self.n_cells, 1, self.periodic) };
         }
     }
-}
-
-/// Rate at which stress relaxes with this `viscosity` of eddies and `time` for the air's own.
-#[inline(always)]
-pub(crate) fn rate<S: Simd>(viscosity: S, time: S) -> S {
-    S::splat(1.0).divide(S::splat(3.0).mul_add(viscosity, time))
 }

@@ -1,6 +1,6 @@
 //! Slopes of wind and temperature along the three axes at the cells of a row.
 
-use super::Warmth;
+use crate::lattice::atmosphere::stratification::Warmth;
 use crate::lattice::fields::{Field, Fields};
 use crate::lattice::layout::Edge;
 use crate::simd::Simd;
