@@ -11,7 +11,7 @@ pub use disc::momentum_theory;
 pub use ground::log_profile;
 pub use isotropy::isotropy;
 pub use refinement::refinement;
-pub use subgrid::subgrid_models;
+pub use subgrid::{models, subgrid_models};
 
 use crate::Row;
 use crate::folds::worst;

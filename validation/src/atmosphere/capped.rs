@@ -5,7 +5,8 @@ use crate::row::Tolerance::Within;
 use crate::studies::{failure, precursor};
 use formats::records::{PrecursorResult, ProfileRow};
 
-const SOURCE: &str = "Berg, Patton, Sullivan (2020) on cells of 5 m";
+const SOURCE: &str =
+    "case of Berg, Patton, Sullivan (2020) on cells of 5 m, 120 to 125 ks, read second hand";
 /// Height (m), speed (m/s), turbulence intensity (–) and turning from the lowest of them (deg).
 const PROFILE: [[f64; 4]; 4] = [
     [27.0, 3.71, 0.086, 0.0],
@@ -26,7 +27,7 @@ pub fn capped_boundary_layer() -> Vec<Row> {
 
 fn rows(result: &PrecursorResult) -> Vec<Row> {
     let row = |what: String, measured, expected, within, unit| Row {
-        what: format!("capped boundary layer, 10 m cells, 18 to 19.4 h: {what}"),
+        what: format!("capped boundary layer, 10 m cells, 57 to 62 ks: {what}"),
         measured,
         expected,
         tolerance: Within(within),

@@ -4,6 +4,7 @@
 //! 73° N, ground cooled by 0.25 K an hour, nine hours, profiles of the last.
 
 use crate::Row;
+use crate::flow::models;
 use crate::folds::worst;
 use crate::row::Tolerance::Within;
 use basis::Vector3;
@@ -12,7 +13,7 @@ use flow::lattice::atmosphere::{
     layer_depth,
 };
 use flow::lattice::{
-    DEFAULT_SMAGORINSKY, Ends, Ground, Lattice, LatticeSettings, Stencil, Subgrid, SubgridModel,
+    DEFAULT_SMAGORINSKY, Ends, Ground, Lattice, LatticeSettings, Stencil, Subgrid,
 };
 use flow::{FlowSolver, Inflow};
 use std::sync::Arc;
@@ -31,14 +32,14 @@ pub fn stable_boundary_layer() -> Vec<Row> {
     run.rows("6.25 m cells")
 }
 
-/// The same on cells of 12.5 m with each model of unresolved eddies, each with its usual constant.
+/// The same on cells of 12.5 m with each model of unresolved eddies as it is chosen.
 pub fn stable_subgrid_models() -> Vec<Row> {
-    SubgridModel::ALL
+    models()
         .into_iter()
-        .flat_map(|model| {
-            let run = stable(32, 9.0, Subgrid::new(model));
+        .flat_map(|(name, subgrid)| {
+            let run = stable(32, 9.0, subgrid);
             run.tell();
-            run.rows(&format!("12.5 m cells, {}", model.word()))
+            run.rows(&format!("12.5 m cells, {name}"))
         })
         .collect()
 }

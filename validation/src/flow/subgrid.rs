@@ -14,7 +14,7 @@ use flow::lattice::{DEFAULT_SMAGORINSKY, Stencil, Subgrid, SubgridModel, VON_KAR
 use std::f64::consts::TAU;
 
 /// The models as they are chosen: Smagorinsky's with the constants of free air and of rough ground.
-fn models() -> Vec<(String, Subgrid)> {
+pub fn models() -> Vec<(String, Subgrid)> {
     SubgridModel::ALL
         .into_iter()
         .flat_map(|model| match model {
@@ -77,7 +77,9 @@ fn rough_ground() -> Vec<Row> {
             let quarter = channel.means.len() / 4;
             let lowest = &slopes[1..quarter];
             let row = |what: &str, measured, expected, tolerance| Row {
-                what: format!("rough ground, D3Q27, {name}: {what}"),
+                what: format!(
+                    "rough ground, 4 to 10 turnovers after the law's own wind, D3Q27, {name}: {what}"
+                ),
                 measured,
                 expected,
                 tolerance,

@@ -119,9 +119,9 @@ impl TurbineModel {
     }
 }
 
-/// Smagorinsky's constant above a rough ground (–): with 0.16 the slope of the mean wind gives the friction
-/// velocity 7 % above the logarithmic law's, with the 0.12 of wakes in free air 20 % below it
-/// (docs/validation/flow.md).
+/// Smagorinsky's constant above a rough ground (–): with nineteen directions and 0.16 the slope of the mean
+/// wind gives the friction velocity 7 % above the logarithmic law's, with the 0.12 of wakes in free air 20 %
+/// below it; with twenty-seven directions both give too much, 19 and 15 % (docs/validation/flow.md).
 pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
 /// Settings of the air for `plan`, boxes of finer cells aside.

@@ -75,7 +75,13 @@ pub static KEYS: [Key; 12] = [
         Otherwise("0.12; 0.16 over a rough ground"),
         "Constant of Smagorinsky's eddy viscosity, whose filter is a cell wide.",
     ),
-    key("subgrid", Holds::Choice(&SUBGRID_WORDS), "", Otherwise("`smagorinsky`"), SUBGRID_MEANING),
+    key(
+        "subgrid",
+        Holds::Choice(&SUBGRID_WORDS),
+        "",
+        Otherwise("`smagorinsky`"),
+        "Model of the eddies that cells do not resolve. `smagorinsky`: from the strain of the cell. From the velocity gradient between neighbours, in a pass of its own and with 20 bytes more a cell: `wale` (Nicoud, Ducros 1999), `vreman` (Vreman 2004), `amd`: anisotropic minimum dissipation (Rozema et al. 2015). docs/validation/flow.md compares them.",
+    ),
     key(
         "subgrid_constant",
         from(0.0, 1.0),
@@ -87,9 +93,6 @@ pub static KEYS: [Key; 12] = [
 
 /// Words of `subgrid`, as [`SubgridModel::word`] has them.
 pub const SUBGRID_WORDS: [&str; 4] = ["smagorinsky", "wale", "vreman", "amd"];
-
-/// What `subgrid` means.
-pub const SUBGRID_MEANING: &str = "Model of the eddies that cells do not resolve. `smagorinsky`: from the strain of the cell. From the velocity gradient between neighbours, in a pass of its own and with 16 bytes more a cell: `wale` (Nicoud, Ducros 1999), `vreman` (Vreman 2004), `amd`: anisotropic minimum dissipation (Rozema et al. 2015). docs/validation/flow.md compares them.";
 
 /// `flow.ground` of a rough ground.
 pub static GROUND: Table = Table {

@@ -22,7 +22,7 @@ const SOURCE: &str =
 /// Mesh of the grid (m) and wind through it (m/s).
 const MESH: f64 = 0.0508;
 const WIND: f64 = 10.0;
-/// Distance from the grid to the three places (meshes).
+/// Times of the three places (meshes over the wind in front of the contraction behind the grid).
 const PLACES: [f64; 3] = [42.0, 98.0, 171.0];
 /// Edge of the box (m).
 const EDGE: f64 = 11.0 * MESH;
@@ -84,7 +84,7 @@ pub(super) fn decay() -> Vec<Row> {
                 unit: "-",
                 source: SOURCE,
             };
-            rows.push(row("energy 171 meshes behind the grid over the measured one", all, 0.1));
+            rows.push(row("energy 171 mesh times behind the grid over the measured one", all, 0.1));
             let what = "the same of the upper half of the wave numbers";
             rows.push(row(what, small, 0.25));
         }
@@ -92,8 +92,8 @@ pub(super) fn decay() -> Vec<Row> {
     rows
 }
 
-/// Energy at the last place over that measured there: of all wave numbers of `n` cells, and of their upper
-/// half.
+/// Energy at the last place over that measured there: of the wave numbers of `n` cells from the second on,
+/// and of their upper half.
 fn decayed(n: usize, stencil: Stencil, subgrid: Subgrid, name: &str) -> [f64; 2] {
     let box_of = Box3 { n };
     let spacing = EDGE / n as f64;
@@ -125,9 +125,10 @@ fn decayed(n: usize, stencil: Stencil, subgrid: Subgrid, name: &str) -> [f64; 2]
             let expected = (from..n / 2).map(|shell| measured(box_of.wave_number(shell), place));
             found[from..].iter().sum::<f64>() / expected.sum::<f64>()
         };
-        shares = [share(1), share(n / 4)];
+        // The first shell lies below the wave numbers that were measured at all places.
+        shares = [share(2), share(n / 4)];
         let [all, small] = shares;
-        tell!("{name}: at {} meshes {all:.3}, upper half {small:.3}", PLACES[place]);
+        tell!("{name}: after {} mesh times {all:.3}, upper half {small:.3}", PLACES[place]);
     }
     shares
 }

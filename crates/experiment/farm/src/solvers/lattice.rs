@@ -19,8 +19,9 @@ const FURTHER_BYTES: u64 = 4;
 
 /// Cells per diameter below which wakes are smeared (–).
 const CELLS_TO_WARN: f64 = 16.0;
-/// Memory of a cell whose eddies follow from the wind of neighbours (bytes): that wind and a viscosity.
-const EDDY_BYTES: u64 = 16;
+/// Memory of a cell whose eddies follow from the wind of neighbours (bytes): that wind and a viscosity, 16,
+/// and what lies beyond the ends of rows of some sixty cells and more.
+const EDDY_BYTES: u64 = 20;
 
 /// Those of a box of cells, and that of finer ones in it.
 static KEYS: [Key; domain::KEYS.len() + 1] = {

@@ -4,16 +4,18 @@
 //! step (position, force, smearing length each); then what the engine writes, which on the processor is the
 //! outlet halo row by row, the filtered wind at the ground, all populations; in an atmosphere also what the
 //! ground remembers, the mean temperatures of the levels, temperature now and a step before, and its last
-//! change; the viscosity of eddies, where a pass of its own finds it.
+//! change; where a pass of its own finds the viscosity of eddies, that, and their diffusivity in an
+//! atmosphere.
 //! Everything else follows from settings and inflow.
 
 use super::fields::N_KEPT;
 use super::solver::Lattice;
+use super::subgrid::SubgridModel;
 use basis::{PointForce, Vector3};
 use std::io::{Error, ErrorKind, Read, Result, Write};
 
 const MAGIC: [u8; 8] = *b"wmlattic";
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 /// More forces than this are a sign of a damaged file.
 const MOST_FORCES: u64 = 1 << 24;
 
@@ -53,10 +55,16 @@ impl Lattice {
         if magic != MAGIC {
             return Err(invalid("this is no state of a lattice".to_owned()));
         }
-        for (what, expected) in
-            ["version", "cells along x", "cells along y", "cells along z", "populations"]
-                .iter()
-                .zip(self.header())
+        for (what, expected) in [
+            "version",
+            "cells along x",
+            "cells along y",
+            "cells along z",
+            "populations",
+            "model of eddies number",
+        ]
+        .iter()
+        .zip(self.header())
         {
             let found = read_u64(reader)?;
             if found != expected {
@@ -85,11 +93,15 @@ impl Lattice {
         self.engine.read_state(n_steps, reader)
     }
 
-    fn header(&self) -> [u64; 5] {
+    fn header(&self) -> [u64; 6] {
         let [x, y, z] = self.n_cells().map(|n| n as u64);
         let heat = self.settings().atmosphere.as_ref().map_or(0, |_| N_KEPT as u64);
-        let eddies = u64::from(self.settings().subgrid.model.needs_neighbours());
-        [VERSION, x, y, z, self.settings().stencil.n_directions() + heat + eddies]
+        let model = self.settings().subgrid.model;
+        let eddies = match SubgridModel::ALL.iter().position(|known| *known == model) {
+            Some(place) => place as u64,
+            None => u64::MAX,
+        };
+        [VERSION, x, y, z, self.settings().stencil.n_directions() + heat, eddies]
     }
 }
 

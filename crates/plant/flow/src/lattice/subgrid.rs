@@ -38,9 +38,10 @@ impl Subgrid {
 /// need the whole gradient of the velocity, which is taken from the wind of the six neighbours: a pass of its
 /// own after each step, whose viscosity acts in the next one.
 ///
-/// In stratified air Smagorinsky's model has Lilly's correction; WALE's and Vreman's viscosity is reduced by
-/// the same factor, √(1 − N²/(Pr |S|²)). Minimum dissipation has a term of buoyancy and a diffusivity of heat
-/// of its own (Abkar, Moin 2017, Bound.-Layer Meteorol. 165, 405).
+/// In stratified air Smagorinsky's model has Lilly's correction, √(1 − N²/(Pr |S|²)); WALE's and Vreman's
+/// viscosity has it with the square of all slopes of the wind in place of |S|², the same in pure shear.
+/// Minimum dissipation has a term of buoyancy and a diffusivity of heat of its own (Abkar, Moin 2017,
+/// Bound.-Layer Meteorol. 165, 405).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SubgridModel {
     /// ν = (C Δ)² |S| (Smagorinsky 1963, Mon. Weather Rev. 91, 99).

@@ -2,7 +2,7 @@
 
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Slip, Table, above, from, key};
-use farm::domain::{SUBGRID_MEANING, SUBGRID_WORDS};
+use farm::domain::SUBGRID_WORDS;
 
 /// Greatest seed: the lattice's noise tells so many apart.
 const SEED_MOST: u64 = (1 << 24) - 1;
@@ -52,7 +52,7 @@ pub(in crate::case) static BOX: Table = Table {
         key("height", above(10.0, 2e4), "m", Required, "Height; the inversion and the damped layer have their place in it.")
             .mistaken(&[Slip { unit: "km", factor: 1000.0 }]),
         key("cell", above(0.0, 500.0), "m", Required, "Edge of a cell: half as large takes sixteen times as long. At least eight lie below the inversion."),
-        key("subgrid", Holds::Choice(&SUBGRID_WORDS), "", Otherwise("`smagorinsky`"), SUBGRID_MEANING),
+        key("subgrid", Holds::Choice(&SUBGRID_WORDS), "", Otherwise("`smagorinsky`"), "Model of the eddies that cells do not resolve. `smagorinsky`: from the strain of the cell, with the constant 0.16. From the velocity gradient between neighbours, in a pass of its own: `wale` (Nicoud, Ducros 1999), `vreman` (Vreman 2004), `amd`: anisotropic minimum dissipation (Rozema et al. 2015). docs/validation/atmosphere.md compares them."),
         key("threads", Holds::Whole { least: 1, most: 1024 }, "–", Otherwise("all cores"), "Threads. The result does not depend on it."),
     ],
 };

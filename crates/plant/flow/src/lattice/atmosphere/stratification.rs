@@ -34,7 +34,7 @@ pub(crate) struct Stratification {
 /// The temperature that the pass over unresolved eddies finds.
 pub(crate) struct Warmth<'a> {
     /// Where it lies.
-    pub(crate) temperature: Field,
+    pub(in crate::lattice) temperature: Field,
     pub(crate) coefficients: &'a Coefficients,
     /// Levels, from the ground up.
     pub(crate) levels: &'a [Level],

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::FlowSolver;
+use crate::lattice::atmosphere::Atmosphere;
 use crate::lattice::refinement::{Refined, Refinement, RefinementError};
 use basis::PointForce;
 use std::f64::consts::TAU;
@@ -73,8 +74,8 @@ fn gradient(settings: &LatticeSettings, cell: [usize; 3]) -> Gradient {
     gradient
 }
 
-/// The models as their papers have them, in double precision.
-fn viscosity(model: SubgridModel, g: &Gradient) -> f64 {
+/// The models as their papers have them, in double precision; `lift` is the energy that buoyancy gives.
+fn viscosity(model: SubgridModel, g: &Gradient, lift: f64) -> f64 {
     let sum = |f: &dyn Fn(usize, usize) -> f64| -> f64 {
         (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| f(i, j)).sum()
     };
@@ -82,7 +83,12 @@ fn viscosity(model: SubgridModel, g: &Gradient) -> f64 {
     let product = |i: usize, j: usize| -> f64 { (0..3).map(|k| g[i][k] * g[j][k]).sum() };
     let square = |i: usize, j: usize| -> f64 { (0..3).map(|k| g[i][k] * g[k][j]).sum() };
     let all = sum(&|i, j| g[i][j] * g[i][j]);
-    let constant = model.usual_constant();
+    // Constants of the papers, written once more.
+    let constant: f64 = match model {
+        SubgridModel::Wale => 0.5,
+        SubgridModel::Vreman => 0.07,
+        _ => 0.3,
+    };
     match model {
         SubgridModel::Smagorinsky => unreachable!("found in the collision"),
         SubgridModel::Wale => {
@@ -100,7 +106,7 @@ fn viscosity(model: SubgridModel, g: &Gradient) -> f64 {
             constant * ((minor(0, 1) + minor(0, 2) + minor(1, 2)) / all).sqrt()
         }
         SubgridModel::MinimumDissipation => {
-            constant * (-sum(&|i, j| product(i, j) * strain(i, j))).max(0.0) / all
+            constant * (lift - sum(&|i, j| product(i, j) * strain(i, j))).max(0.0) / all
         }
     }
 }
@@ -137,7 +143,7 @@ fn the_viscosity_is_that_of_the_papers_whatever_the_sides() {
             let mut greatest: f64 = 0.0;
             for (index, found) in found.iter().enumerate() {
                 let cell = [index % n_x, index / n_x % n_y, index / n_x / n_y];
-                let expected = viscosity(model, &gradient(&settings, cell));
+                let expected = viscosity(model, &gradient(&settings, cell), 0.0);
                 greatest = greatest.max(expected);
                 // Single precision of the wind, a hundredth of which the slopes are.
                 let error = (found - expected).abs();
@@ -145,6 +151,109 @@ fn the_viscosity_is_that_of_the_papers_whatever_the_sides() {
             }
             assert_eq!(found.len(), n_x * n_y * n_z);
             assert!(greatest > 1e-4, "{model:?} {ground:?}: eddies of {greatest}");
+        }
+    }
+}
+
+/// Air with [`wind`] and [`warmth`].
+struct Warm;
+
+impl Inflow for Warm {
+    fn sample(&self, _: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
+        for (position, velocity) in positions.iter().zip(velocities) {
+            *velocity = wind(*position);
+        }
+    }
+
+    fn sample_temperature(&self, _: f64, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
+        for (position, temperature) in positions.iter().zip(temperatures) {
+            *temperature = warmth(*position);
+        }
+        true
+    }
+}
+
+/// Temperature without symmetry (K), periodic along x and y.
+fn warmth(position: Vector3) -> f64 {
+    let [x, y, _]: [f64; 3] =
+        std::array::from_fn(|axis| TAU * (position.to_array()[axis] + 0.5) / N_CELLS[axis] as f64);
+    let z = position.z;
+    300.0 + 0.3 * z + 0.02 * z * z + (0.5 + 0.1 * z) * ((x + 0.2).sin() + (y - 0.7).cos())
+}
+
+/// Slopes of [`warmth`] at a cell, and that upwards of what departs from the mean of each level: sides mirror,
+/// the lowest and the highest level look to one side.
+fn warm_slopes(settings: &LatticeSettings, cell: [usize; 3]) -> ([f64; 3], f64) {
+    let [n_x, n_y, n_z] = N_CELLS.map(|n| n as i64);
+    let at = |x: i64, y: i64, z: i64| {
+        let y = match settings.sides {
+            Sides::Slip => y.clamp(0, n_y - 1),
+            Sides::Periodic => y.rem_euclid(n_y),
+        };
+        warmth(Vector3::new(x.rem_euclid(n_x) as f64, y as f64, z as f64))
+    };
+    let [x, y, z] = cell.map(|index| index as i64);
+    let (below, above) = ((z - 1).max(0), (z + 1).min(n_z - 1));
+    let rise = 1.0 / (above - below) as f64;
+    let level = |z: i64| -> f64 {
+        let sum: f64 = (0..n_x * n_y).map(|index| at(index % n_x, index / n_x, z)).sum();
+        sum / (n_x * n_y) as f64
+    };
+    let upwards = rise * (at(x, y, above) - at(x, y, below));
+    let slopes = [
+        0.5 * (at(x + 1, y, z) - at(x - 1, y, z)),
+        0.5 * (at(x, y + 1, z) - at(x, y - 1, z)),
+        upwards,
+    ];
+    (slopes, upwards - rise * (level(above) - level(below)))
+}
+
+#[test]
+fn in_an_atmosphere_the_slope_of_temperature_holds_eddies_back_or_drives_them() {
+    // Lattice units: an acceleration of g/θ₀ per kelvin that makes N² as large as the wind's slopes squared.
+    for (gravity, ground) in [
+        (0.03, Ground::WallStress { roughness_length: 0.01 }),
+        (0.03, Ground::Plates),
+        (0.1, Ground::Slip),
+    ] {
+        for (backend, model) in available().flat_map(|backend| MODELS.map(|model| (backend, model)))
+        {
+            let mut settings = settings(model, backend);
+            settings.ground = ground;
+            settings.sides = if ground == Ground::Plates { Sides::Slip } else { Sides::Periodic };
+            settings.atmosphere = Some(Atmosphere { gravity, ..Atmosphere::new(300.0) });
+            let buoyancy = gravity / 300.0;
+            let mut air = Lattice::new(settings.clone(), Arc::new(Warm)).unwrap();
+            air.advance(1.0, &[]).unwrap();
+            let found = air.eddy_viscosity().unwrap();
+            let [n_x, n_y, _] = N_CELLS;
+            let mut moved: f64 = 0.0;
+            for (index, found) in found.iter().enumerate() {
+                let cell = [index % n_x, index / n_x % n_y, index / n_x / n_y];
+                let g = gradient(&settings, cell);
+                let ([tx, ty, tz], departing) = warm_slopes(&settings, cell);
+                let neutral = viscosity(model, &g, 0.0);
+                let expected = match model {
+                    SubgridModel::MinimumDissipation => {
+                        let [wx, wy, wz] = g[2];
+                        viscosity(model, &g, buoyancy * (wx * tx + wy * ty + wz * departing))
+                    }
+                    _ => {
+                        let all: f64 = g.iter().flatten().map(|slope| slope * slope).sum();
+                        // Pr = 1/3.
+                        neutral * (1.0 - 3.0 * buoyancy * tz / all).max(0.0).sqrt()
+                    }
+                };
+                moved = moved.max((expected - neutral).abs());
+                // Of squares, for a root near nought magnifies what rounding left, a millionth of slopes.
+                let error = (found * found - expected * expected).abs();
+                let size = neutral.max(1e-3).powi(2) + expected * expected;
+                assert!(
+                    error < 2e-4 * size,
+                    "{backend:?} {model:?} {ground:?} {cell:?}: {found}, {expected}"
+                );
+            }
+            assert!(moved > 1e-4, "{model:?} {ground:?}: temperature moves {moved}");
         }
     }
 }
@@ -225,13 +334,18 @@ fn threads_and_resuming_change_no_bit() {
 }
 
 #[test]
-fn a_state_of_the_other_kind_of_model_is_refused() {
+fn a_state_of_another_model_is_refused() {
     let mut plain = lattice(settings(SubgridModel::Smagorinsky, Backend::detect()), |_, x| wind(x));
     let mut bytes = Vec::new();
     plain.write_state(&mut bytes).unwrap();
     let mut air = lattice(settings(SubgridModel::Wale, Backend::detect()), |_, x| wind(x));
     let error = air.read_state(&mut bytes.as_slice()).unwrap_err().to_string();
-    assert!(error.contains("has populations 19, this lattice 20"), "{error}");
+    assert!(error.contains("has model of eddies number 0, this lattice 1"), "{error}");
+    let mut other = lattice(settings(SubgridModel::Vreman, Backend::detect()), |_, x| wind(x));
+    let mut bytes = Vec::new();
+    other.write_state(&mut bytes).unwrap();
+    let error = air.read_state(&mut bytes.as_slice()).unwrap_err().to_string();
+    assert!(error.contains("has model of eddies number 2, this lattice 1"), "{error}");
     assert!(plain.eddy_viscosity().is_none());
 }
 
