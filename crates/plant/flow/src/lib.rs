@@ -70,9 +70,8 @@ pub trait Inflow: Send + Sync {
     /// same length.
     fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]);
 
-    /// The same for potential temperature (K) into `temperatures`, asked at the start; what enters later has
-    /// the first temperature of its height. False, and nothing is written, where it is not known: the air has
-    /// that temperature from the start then.
+    /// The same for potential temperature (K) into `temperatures`. False, and nothing is written, where it is
+    /// not known: the air has the temperature of its height in the atmosphere's profile then.
     fn sample_temperature(
         &self,
         time: f64,

@@ -210,6 +210,9 @@ impl Engine for Cpu {
         self.pool.run(&|thread| {
             let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
+            if let (Some(air), Some(entering)) = (air, inlet.temperatures(n_steps)) {
+                air.enter(n_steps, share.rows.start, entering);
+            }
             match (&stratified, &noted) {
                 (Some(air), _) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
                 (None, Some(air)) => kernel.sweep_noted(&step, air, spreader.blocks(), share),
@@ -356,8 +359,13 @@ impl Engine for Cpu {
             Some(_) => 4 * self.layout.row_stride * self.layout.n_cells[1] * size_of::<f32>(),
             None => 0,
         };
-        // Each row has its place at the inlet: two vectors in double and ten single values.
-        let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>());
+        // Each row has its place at the inlet: two vectors in double and ten single values; its temperature in
+        // double and twice in single.
+        let warm = match self.stratification {
+            Some(_) => size_of::<f64>() + 2 * size_of::<f32>(),
+            None => 0,
+        };
+        let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>() + warm);
         let heat = self.stratification.as_ref().map_or(0, Stratification::bytes);
         let noted = self.eddies.as_ref().map_or(0, Eddies::bytes);
         (self.memory.bytes() + wall + ends + heat + noted) as u64

@@ -1,4 +1,4 @@
-//! The wind that enters, sampled every few steps and interpolated in between.
+//! The wind that enters, and its temperature, sampled every few steps and interpolated in between.
 
 use super::ends::RowEnds;
 use super::layout::Layout;
@@ -17,13 +17,31 @@ pub(crate) struct Inlet {
     velocities: Vec<Vector3>,
     /// Lattice velocities at the two times around the present step.
     around: [[Vec<f32>; 3]; 2],
+    /// Temperature likewise, in an atmosphere.
+    heat: Option<EnteringHeat>,
     /// Interval of `STRIDE` steps that `around` belongs to.
     interval: Option<u64>,
 }
 
+/// Temperature of the wind that enters.
+struct EnteringHeat {
+    /// Temperature that departures count from (K).
+    reference: f64,
+    temperatures: Vec<f64>,
+    /// Departures at the two times around the present step (K).
+    around: [Vec<f32>; 2],
+    /// Whether the inflow tells its temperature.
+    told: bool,
+}
+
 impl Inlet {
-    /// The inlet of `rows`.
-    pub(crate) fn new(layout: &Layout, scaling: &Scaling, rows: Range<usize>) -> Self {
+    /// The inlet of `rows`; in an atmosphere temperature counts from `reference` (K).
+    pub(crate) fn new(
+        layout: &Layout,
+        scaling: &Scaling,
+        rows: Range<usize>,
+        reference: Option<f64>,
+    ) -> Self {
         let positions: Vec<_> = rows
             .map(|row| {
                 let [y, z] = layout.place(row);
@@ -31,7 +49,14 @@ impl Inlet {
             })
             .collect();
         let plane = || std::array::from_fn(|_| vec![0.0; positions.len()]);
+        let heat = reference.map(|reference| EnteringHeat {
+            reference,
+            temperatures: vec![0.0; positions.len()],
+            around: [vec![0.0; positions.len()], vec![0.0; positions.len()]],
+            told: false,
+        });
         Self {
+            heat,
             velocities: vec![Vector3::ZERO; positions.len()],
             around: [plane(), plane()],
             interval: None,
@@ -57,6 +82,9 @@ impl Inlet {
         if self.interval != Some(interval) {
             if interval > 0 && self.interval == Some(interval - 1) {
                 self.around.swap(0, 1);
+                if let Some(heat) = &mut self.heat {
+                    heat.around.swap(0, 1);
+                }
             } else {
                 self.ask(interval * STRIDE, inflow, scaling, 0);
             }
@@ -72,8 +100,26 @@ impl Inlet {
         }
     }
 
+    /// Temperatures that enter at step number `step` at the rows from the first on, as departures (K); none
+    /// where the inflow does not tell its own. Valid once the inlet was [updated](Self::update) to that step.
+    pub(crate) fn temperatures(&self, step: u64) -> Option<impl Iterator<Item = f32> + '_> {
+        let heat = self.heat.as_ref().filter(|heat| heat.told)?;
+        let weight = (step % STRIDE) as f32 / STRIDE as f32;
+        let [before, after] = &heat.around;
+        Some(
+            before.iter().zip(after).map(move |(before, after)| before + weight * (after - before)),
+        )
+    }
+
     fn ask(&mut self, step: u64, inflow: &dyn Inflow, scaling: &Scaling, which: usize) {
-        inflow.sample(step as f64 * scaling.interval(), &self.positions, &mut self.velocities);
+        let time = step as f64 * scaling.interval();
+        inflow.sample(time, &self.positions, &mut self.velocities);
+        if let Some(heat) = &mut self.heat {
+            heat.told = inflow.sample_temperature(time, &self.positions, &mut heat.temperatures);
+            for (departure, temperature) in heat.around[which].iter_mut().zip(&heat.temperatures) {
+                *departure = (temperature - heat.reference) as f32;
+            }
+        }
         let [x, y, z] = &mut self.around[which];
         for (index, velocity) in self.velocities.iter().enumerate() {
             let velocity = scaling.to_lattice_velocity(*velocity);

@@ -8,6 +8,7 @@ mod engines;
 pub(super) mod ground;
 mod invariants;
 mod stencils;
+mod warm_inlet;
 
 use super::*;
 use crate::Inflow;

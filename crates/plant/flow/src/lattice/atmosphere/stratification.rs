@@ -4,7 +4,7 @@ use super::coefficients::{Coefficients, Level, levels};
 use super::law::{Law, Slope, Stratified};
 use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
-use super::transport::{Ghosts, Transport, close_row};
+use super::transport::{Ghosts, Transport, close_row, upstream};
 use crate::lattice::fields::{Field, Fields, KEPT};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
@@ -185,6 +185,17 @@ impl Stratification {
             }
         }
         self.close(Fields::temperature(0), y, z);
+    }
+
+    /// Gives what lies upstream of the rows from number `first` on the temperatures `entering` (K above the
+    /// reference) for step number `n_steps`.
+    pub(crate) fn enter(&self, n_steps: u64, first: usize, entering: impl Iterator<Item = f32>) {
+        let n_y = self.fields.n_cells[1];
+        for (row, entering) in (first..).zip(entering) {
+            let row = self.fields.row(Fields::temperature(n_steps), row % n_y, row / n_y);
+            // SAFETY: the padding of a row of this thread, which others do not read.
+            unsafe { upstream(row, entering) };
+        }
     }
 
     /// Temperatures of row number `row` after `n_steps` steps (K above the reference).

@@ -126,7 +126,8 @@ struct Row {
     damping: [f32; 2],
     /// What of this step's change, and of the last one's, is made.
     weights: [f32; 2],
-    /// Temperature that enters at the row's beginning (K above the reference).
+    /// Temperature that enters at the row's beginning where the inflow does not tell its own (K above the
+    /// reference).
     entering: f32,
 }
 
@@ -275,10 +276,20 @@ pub(super) unsafe fn close_row(row: *mut f32, n: usize, periodic: bool, entering
     unsafe {
         beyond(row, n, REACH, periodic);
         if !periodic {
-            for offset in 1..=REACH {
-                *row.wrapping_sub(offset) = entering;
-            }
+            upstream(row, entering);
         }
+    }
+}
+
+/// Gives what lies upstream of a `row` the temperature that is `entering` (K above the reference).
+///
+/// # Safety
+/// A row of the fields whose padding nobody else uses meanwhile.
+#[inline(always)]
+pub(super) unsafe fn upstream(row: *mut f32, entering: f32) {
+    for offset in 1..=REACH {
+        // SAFETY: the row's own padding.
+        unsafe { *row.wrapping_sub(offset) = entering };
     }
 }
 

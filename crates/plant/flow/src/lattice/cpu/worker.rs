@@ -52,9 +52,10 @@ impl Worker {
             false => 0,
         };
         let padded = layout.n_cells[0].next_multiple_of(MAXIMUM_LANES);
+        let reference = settings.atmosphere.as_ref().map(|air| air.reference_temperature);
         let wall = || vec![0.0; n_wall_rows * layout.row_stride];
         Self {
-            inlet: Inlet::new(layout, &settings.scaling(), rows.clone()),
+            inlet: Inlet::new(layout, &settings.scaling(), rows.clone(), reference),
             wall: WallMemory::new(layout, n_wall_rows),
             spreader: Spreader::new(settings.scaling(), settings.n_cells).on_levels(levels),
             row: RowState::new(layout.n_cells[0]),

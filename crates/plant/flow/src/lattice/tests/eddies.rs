@@ -233,23 +233,24 @@ fn in_an_atmosphere_the_slope_of_temperature_holds_eddies_back_or_drives_them() 
                 let g = gradient(&settings, cell);
                 let ([tx, ty, tz], departing) = warm_slopes(&settings, cell);
                 let neutral = viscosity(model, &g, 0.0);
+                let all: f64 = g.iter().flatten().map(|slope| slope * slope).sum();
                 let expected = match model {
                     SubgridModel::MinimumDissipation => {
                         let [wx, wy, wz] = g[2];
                         viscosity(model, &g, buoyancy * (wx * tx + wy * ty + wz * departing))
                     }
                     _ => {
-                        let all: f64 = g.iter().flatten().map(|slope| slope * slope).sum();
                         // Pr = 1/3.
                         neutral * (1.0 - 3.0 * buoyancy * tz / all).max(0.0).sqrt()
                     }
                 };
                 moved = moved.max((expected - neutral).abs());
-                // Of squares, for a root near nought magnifies what rounding left, a millionth of slopes.
+                // Of squares, for a root near nought magnifies what rounding left. The wind that the pass
+                // finds has what buoyancy and a rough ground did in half of the first step, up to three percent.
                 let error = (found * found - expected * expected).abs();
-                let size = neutral.max(1e-3).powi(2) + expected * expected;
+                let size = neutral.max(expected).max(1e-4);
                 assert!(
-                    error < 2e-4 * size,
+                    error < 0.08 * size * size,
                     "{backend:?} {model:?} {ground:?} {cell:?}: {found}, {expected}"
                 );
             }
