@@ -250,8 +250,8 @@ mod tests {
         let waves = cube.transform(&columns);
         let found = cube.spectrum(&waves);
         let mut sum = 0.0;
-        for shell in 1..8 {
-            assert!((found[shell] / target(shell) - 1.0).abs() < 1e-5, "{shell}: {}", found[shell]);
+        for (shell, found) in found.iter().enumerate().take(8).skip(1) {
+            assert!((found / target(shell) - 1.0).abs() < 1e-5, "{shell}: {found}");
             sum += target(shell) * cube.wave_number(1);
         }
         let mean = field.iter().map(|u| 0.5 * u.dot(*u)).sum::<f64>() / field.len() as f64;

@@ -359,8 +359,8 @@ impl Engine for Cpu {
             Some(_) => 4 * self.layout.row_stride * self.layout.n_cells[1] * size_of::<f32>(),
             None => 0,
         };
-        // Each row has its place at the inlet: two vectors in double and ten single values; its temperature in
-        // double and twice in single.
+        // Each row has its place at the inlet: two vectors in double and ten single values; its temperature
+        // in double and twice in single.
         let warm = match self.stratification {
             Some(_) => size_of::<f64>() + 2 * size_of::<f32>(),
             None => 0,

@@ -34,7 +34,7 @@ impl Eddies {
     /// Air without temperature whose cells tell their wind; none where they tell it with their temperature.
     pub(super) fn noted(&self) -> Option<Noted<'_>> {
         let Self { law, fields } = self;
-        fields.hold(Field::Viscosity).then(|| Noted { fields, periodic: law.periodic })
+        fields.hold(Field::Viscosity).then_some(Noted { fields, periodic: law.periodic })
     }
 
     /// The pass that finds the viscosity in step number `n_steps` of what may be an atmosphere, `air`.

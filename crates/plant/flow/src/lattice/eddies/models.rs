@@ -254,9 +254,8 @@ mod tests {
             for j in 0..3 {
                 all += GRADIENT[i][j].powi(2);
                 let strain = 0.5 * (GRADIENT[i][j] + GRADIENT[j][i]);
-                for k in 0..3 {
-                    made -= GRADIENT[i][k] * GRADIENT[j][k] * strain;
-                }
+                let product: f64 = GRADIENT[i].iter().zip(&GRADIENT[j]).map(|(a, b)| a * b).sum();
+                made -= product * strain;
                 stirred -= GRADIENT[i][j] * WARM[j] * WARM[i];
             }
         }

@@ -181,8 +181,8 @@ fn warmth(position: Vector3) -> f64 {
     300.0 + 0.3 * z + 0.02 * z * z + (0.5 + 0.1 * z) * ((x + 0.2).sin() + (y - 0.7).cos())
 }
 
-/// Slopes of [`warmth`] at a cell, and that upwards of what departs from the mean of each level: sides mirror,
-/// the lowest and the highest level look to one side.
+/// Slopes of [`warmth`] at a cell, and that upwards of what departs from the mean of each level: sides
+/// mirror, the lowest and the highest level look to one side.
 fn warm_slopes(settings: &LatticeSettings, cell: [usize; 3]) -> ([f64; 3], f64) {
     let [n_x, n_y, n_z] = N_CELLS.map(|n| n as i64);
     let at = |x: i64, y: i64, z: i64| {
@@ -245,8 +245,8 @@ fn in_an_atmosphere_the_slope_of_temperature_holds_eddies_back_or_drives_them() 
                     }
                 };
                 moved = moved.max((expected - neutral).abs());
-                // Of squares, for a root near nought magnifies what rounding left. The wind that the pass
-                // finds has what buoyancy and a rough ground did in half of the first step, up to three percent.
+                // Of squares, for a root near nought magnifies what rounding left. The wind that the
+                // pass finds has what buoyancy and ground did in half of the first step, up to 3 %.
                 let error = (found * found - expected * expected).abs();
                 let size = neutral.max(expected).max(1e-4);
                 assert!(
