@@ -91,8 +91,11 @@ pub static KEYS: [Key; 12] = [
     ),
 ];
 
-/// Words of `subgrid`, as [`SubgridModel::word`] has them.
-pub const SUBGRID_WORDS: [&str; 4] = ["smagorinsky", "wale", "vreman", "amd"];
+/// Words of `subgrid`.
+pub const SUBGRID_WORDS: [&str; 4] = {
+    let [first, second, third, fourth] = SubgridModel::ALL;
+    [first.word(), second.word(), third.word(), fourth.word()]
+};
 
 /// `flow.ground` of a rough ground.
 pub static GROUND: Table = Table {

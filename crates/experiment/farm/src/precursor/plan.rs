@@ -3,11 +3,12 @@
 use super::Precursor;
 use super::start::Start;
 use crate::assemble::SMAGORINSKY_OVER_GROUND;
+use crate::domain::Method;
 use basis::Vector3;
 use flow::Inflow;
 use flow::inflow::PlaneGrid;
 use flow::lattice::atmosphere::{Atmosphere, Damping, Driving, GRAVITY, Heating, Perturbation};
-use flow::lattice::{Ends, Ground, LatticeSettings, Stencil, Subgrid, SubgridModel};
+use flow::lattice::{Ends, Ground, LatticeSettings, Stencil, Subgrid};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -143,12 +144,10 @@ impl Precursor {
         );
         settings.ends = Ends::Periodic;
         settings.ground = Ground::WallStress { roughness_length: air.roughness_length };
-        settings.subgrid = match self.domain.subgrid {
-            SubgridModel::Smagorinsky => Subgrid::smagorinsky(SMAGORINSKY_OVER_GROUND),
-            model => Subgrid::new(model),
-        };
+        settings.subgrid = Subgrid::smagorinsky(SMAGORINSKY_OVER_GROUND);
         // Its eddies live for hours, in which nineteen directions would let the wind feed them.
-        settings.stencil = Stencil::D3Q27;
+        let stencil = Stencil::D3Q27;
+        Method { stencil, subgrid: self.domain.subgrid, constant: None }.apply(&mut settings);
         settings.threads = self.domain.threads;
         settings.atmosphere = Some(self.atmosphere());
         settings

@@ -91,7 +91,7 @@ impl Inlet {
             self.ask((interval + 1) * STRIDE, inflow, scaling, 1);
             self.interval = Some(interval);
         }
-        let weight = (step % STRIDE) as f32 / STRIDE as f32;
+        let weight = weight(step);
         let [before, after] = &self.around;
         for ((column, before), after) in inlet.iter_mut().zip(before).zip(after) {
             for ((value, before), after) in column.iter_mut().zip(before).zip(after) {
@@ -104,7 +104,7 @@ impl Inlet {
     /// where the inflow does not tell its own. Valid once the inlet was [updated](Self::update) to that step.
     pub(crate) fn temperatures(&self, step: u64) -> Option<impl Iterator<Item = f32> + '_> {
         let heat = self.heat.as_ref().filter(|heat| heat.told)?;
-        let weight = (step % STRIDE) as f32 / STRIDE as f32;
+        let weight = weight(step);
         let [before, after] = &heat.around;
         Some(
             before.iter().zip(after).map(move |(before, after)| before + weight * (after - before)),
@@ -127,4 +127,9 @@ impl Inlet {
                 (velocity.x as f32, velocity.y as f32, velocity.z as f32);
         }
     }
+}
+
+/// Weight of the later of the two times around `step` (–).
+fn weight(step: u64) -> f32 {
+    (step % STRIDE) as f32 / STRIDE as f32
 }

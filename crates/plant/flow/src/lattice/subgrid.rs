@@ -62,7 +62,7 @@ impl SubgridModel {
         [Self::Smagorinsky, Self::Wale, Self::Vreman, Self::MinimumDissipation];
 
     /// Its word in files.
-    pub fn word(self) -> &'static str {
+    pub const fn word(self) -> &'static str {
         match self {
             Self::Smagorinsky => "smagorinsky",
             Self::Wale => "wale",
