@@ -8,6 +8,7 @@
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
+pub mod column;
 pub mod deterministic;
 pub mod iec;
 pub mod kaimal;
@@ -28,6 +29,7 @@ pub mod turbulence_box;
 pub mod turbulent;
 mod walk;
 
+pub use column::{ColumnLevel, MeanColumn};
 pub use deterministic::DeterministicWind;
 pub use planes::{PlaneGrid, Planes};
 pub use prescribed::PrescribedWind;

@@ -77,6 +77,16 @@ pub trait Planes: Send + Sync {
     /// [`InflowError::Plane`] when it cannot be had.
     fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError>;
 
+    /// The same for potential temperature (K) into `values`, n_z × n_y. False, and nothing is written, where
+    /// the planes have none.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    fn read_temperature(&mut self, step: usize, values: &mut [f32]) -> Result<bool, InflowError> {
+        let _ = (step, values);
+        Ok(false)
+    }
+
     /// Whether the planes are of a kind whose right end goes on at the left, and whose top at the bottom.
     fn repeats_across(&self) -> bool {
         false

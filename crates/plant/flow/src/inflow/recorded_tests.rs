@@ -177,3 +177,81 @@ fn reading_can_be_broken_off() {
         });
     assert!(matches!(broken, Err(InflowError::BrokenOff)));
 }
+
+/// Planes of [`Given`] with a temperature that tells its place.
+struct Warm(Given);
+
+impl Warm {
+    fn temperature(step: usize, y: usize, z: usize) -> f32 {
+        288.0 + 0.3 * z as f32 + (5.0 * step as f32 + 2.0 * y as f32 + z as f32).sin()
+    }
+
+    /// Mean of row `z` over time and width.
+    fn mean(z: usize) -> f64 {
+        let all = (0..24).flat_map(|step| (0..5).map(move |y| (step, y)));
+        all.map(|(step, y)| f64::from(Self::temperature(step, y, z))).sum::<f64>() / 120.0
+    }
+}
+
+impl Planes for Warm {
+    fn grid(&self) -> PlaneGrid {
+        self.0.grid()
+    }
+
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
+        self.0.read(step, values)
+    }
+
+    fn read_temperature(&mut self, step: usize, values: &mut [f32]) -> Result<bool, InflowError> {
+        for (point, value) in values.iter_mut().enumerate() {
+            *value = Self::temperature(step, point % 5, point / 5);
+        }
+        Ok(true)
+    }
+}
+
+fn column() -> MeanColumn {
+    let level = |height: f64| crate::inflow::ColumnLevel {
+        height,
+        wind: [9.0 + 0.01 * height, -0.004 * height],
+        temperature: 280.0 + 0.02 * height,
+    };
+    MeanColumn::new((0..20).map(|number| level(20.0 * f64::from(number))).collect()).unwrap()
+}
+
+#[test]
+fn temperature_comes_in_with_its_wind() {
+    let planes = Box::new(Warm(Given(GRID)));
+    let inflow = RecordedInflow::read(planes, ENTRY, PROFILE, Beyond::Mean, &|_| true).unwrap();
+    assert!(inflow.has_temperature() && !entering(GRID, ENTRY, Beyond::Mean).has_temperature());
+    let inflow = inflow.with_column_aloft(column());
+    let at = |time: f64, x: f64, y: f64, z: f64| {
+        let mut found = [0.0];
+        assert!(inflow.sample_temperature(time, &[Vector3::new(x, y, z)], &mut found));
+        found[0]
+    };
+    let near = |found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-4, "{found}, expected {expected}");
+    };
+    for (step, y, z) in [(0, 0, 0), (3, 4, 3), (11, 2, 1), (23, 3, 2)] {
+        let (left, height) = place(y, z);
+        let time = 0.5 * step as f64;
+        near(at(time, 0.0, left, height), f64::from(Warm::temperature(step, y, z)));
+        let earlier = f64::from(Warm::temperature((step + 10) % 24, y, z));
+        near(at(time, -50.0, left, height), earlier);
+    }
+    // Below the lowest row the same as there, and to the side the mean of the row.
+    near(at(1.5, 0.0, 0.0, 5.0), f64::from(Warm::temperature(3, 2, 0)));
+    near(at(1.5, 0.0, 400.0, 65.0), Warm::mean(1));
+    // Far above as much warmer than the highest row's mean as the column has it.
+    near(at(1.5, 0.0, 0.0, 215.0), Warm::mean(3) + 0.02 * 100.0);
+}
+
+#[test]
+fn above_the_grid_the_mean_goes_on_as_its_atmosphere_does() {
+    let inflow = entering(GRID, ENTRY, Beyond::Mean).with_column_aloft(column());
+    let [u, v, w] = mean(3);
+    assert_near(at(&inflow, 4.5, 0.0, 0.0, 215.0), [u + 1.0, v - 0.4, w]);
+    // On the grid it is the record's own.
+    assert_near(at(&inflow, 4.5, 0.0, 0.0, 65.0), Given::wind(9, 2, 1));
+}

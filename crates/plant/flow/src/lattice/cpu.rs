@@ -255,6 +255,10 @@ impl Engine for Cpu {
         true
     }
 
+    fn temperature(&self, row: usize) -> Option<&[f32]> {
+        self.stratification.as_ref().map(|air| air.temperature(self.n_steps, row))
+    }
+
     fn eddy_viscosity(&self, row: usize) -> Option<&[f32]> {
         let mixing = self.eddies.as_ref()?.mixing(self.stratification.as_ref(), self.n_steps);
         Some(mixing.viscosity(row))

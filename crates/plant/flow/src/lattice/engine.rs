@@ -43,6 +43,12 @@ pub trait Engine: Send + Sync {
         false
     }
 
+    /// Temperatures of row number `row` (K above the atmosphere's reference); none where the air has none.
+    fn temperature(&self, row: usize) -> Option<&[f32]> {
+        let _ = row;
+        None
+    }
+
     /// The viscosity of eddies on row number `row` in the step to come (cells² a step), where a pass of its
     /// own finds it.
     fn eddy_viscosity(&self, row: usize) -> Option<&[f32]> {

@@ -63,6 +63,21 @@ impl Lattice {
         ((n_cells as f64 + excess) * mass_unit, self.scaling().to_si_velocity(momentum) * mass_unit)
     }
 
+    /// Potential temperature (K) at each of `positions` (m), trilinear between cell centres, outside the box
+    /// the nearest cell's, into `temperatures`, of the same length; false, and nothing is written, where the
+    /// air has none.
+    pub fn sample_temperature(&self, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
+        let Some(atmosphere) = &self.settings().atmosphere else { return false };
+        for (position, temperature) in positions.iter().zip(temperatures) {
+            let (low, high, weight) = self.cell_cube(*position);
+            let departures = corners(low, high).map(|[x, y, z]| {
+                self.engine.temperature(self.row_at(y, z)).map_or(f32::NAN, |row| row[x])
+            });
+            *temperature = atmosphere.reference_temperature + interpolate(&departures, weight);
+        }
+        true
+    }
+
     /// Pressure above that of undisturbed air (Pa) at `position` (m), trilinear between cell centres.
     pub fn pressure(&self, position: Vector3) -> f64 {
         let (low, high, weight) = self.cell_cube(position);

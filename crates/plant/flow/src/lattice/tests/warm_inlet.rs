@@ -67,6 +67,22 @@ fn what_enters_is_carried_along() {
 }
 
 #[test]
+fn temperature_is_told_between_cells() {
+    let mut air = begin(1);
+    air.advance(50.0, &[]).unwrap();
+    let row = row(&air);
+    let places = [4.0, 4.25, 89.0].map(|x| Vector3::new(x, 1.0, 1.0));
+    let mut found = [0.0; 3];
+    assert!(air.sample_temperature(&places, &mut found));
+    let between = row[4] + 0.25 * (row[5] - row[4]);
+    for (found, expected) in found.into_iter().zip([row[4], between, row[89]]) {
+        assert!((found - 300.0 - f64::from(expected)).abs() < 1e-5, "{found}, {expected}");
+    }
+    let dry = Lattice::new(periodic_box([8, 4, 3], 1e-4), Arc::new(Swinging)).unwrap();
+    assert!(!dry.sample_temperature(&places, &mut found));
+}
+
+#[test]
 fn threads_and_resuming_change_no_bit_of_it() {
     let bits = |air: &Lattice| row(air).into_iter().map(f32::to_bits).collect::<Vec<u32>>();
     let [mut one, mut three] = [1, 3].map(begin);
