@@ -6,7 +6,7 @@ use crate::case::{Case, Control, DynamicInflow, Ground, Placement, Run, Sides};
 use crate::coefficients::coefficient_table;
 use crate::plan::{Footprint, Plan};
 use crate::solvers::{Smearing, Solver};
-use crate::{Farm, Machine};
+use crate::{Farm, Machine, wind};
 use basis::keys::Objection;
 use basis::{PerBlade, Vector3};
 use control::baseline::Constants;
@@ -124,8 +124,9 @@ impl TurbineModel {
 /// below it; with twenty-seven directions both give too much, 19 and 15 % (docs/validation/flow.md).
 pub const SMAGORINSKY_OVER_GROUND: f64 = 0.16;
 
-/// Settings of the air for `plan`, boxes of finer cells aside.
-pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
+/// Settings of the air of `site`, boxes of finer cells aside.
+pub fn lattice_settings(site: &wind::Site) -> lattice::LatticeSettings {
+    let wind::Site { case, plan, surroundings, .. } = *site;
     let mut settings = lattice::LatticeSettings::new(
         plan.origin,
         plan.spacing,
@@ -149,6 +150,7 @@ pub fn lattice_settings(case: &Case, plan: &Plan) -> lattice::LatticeSettings {
     }
     domain.method.apply(&mut settings);
     settings.threads = case.flow.threads;
+    settings.atmosphere = surroundings.map(|surroundings| surroundings.atmosphere(plan));
     settings
 }
 

@@ -63,6 +63,9 @@ pub struct Wind {
     /// File with the planes of wind that [`Solver::PLANES`] reads, or that enter at the inlet of a domain,
     /// relative to the case file.
     pub planes: Option<String>,
+    /// Folder of a precursor whose planes enter at the inlet of a domain, with their temperature, and whose
+    /// atmosphere the air of the domain is; relative to the case file.
+    pub precursor: Option<String>,
     /// What blows where a domain is larger than the grid of these planes, where the case says so.
     pub beyond_planes: Option<Beyond>,
     /// File with the wind over time for a solver of deterministic wind, relative to the case file.
@@ -75,6 +78,11 @@ pub struct Wind {
 }
 
 impl Wind {
+    /// Whether it comes from recorded planes, of a file or of a precursor, rather than being made.
+    pub fn brings_planes(&self) -> bool {
+        self.planes.is_some() || self.precursor.is_some()
+    }
+
     /// Where the mean wind comes from, for records and readers (deg, clockwise from north).
     pub fn direction_deg(&self) -> f64 {
         // Without what the change of units leaves at its end.

@@ -1,6 +1,7 @@
 //! The air that a run starts with.
 
 use crate::StudyError;
+use crate::atmosphere;
 use crate::prepared::Prepared;
 use farm::Air;
 use farm::case::Case;
@@ -28,14 +29,16 @@ pub(crate) fn begin(
     begun(Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
 }
 
-/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes.
+/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes nor
+/// an atmosphere.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up.
 pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyError> {
     case.wind.turbulence_intensity = 0.0;
     case.wind.planes = None;
-    let site = Site { case, ..setup.site() };
+    case.wind.precursor = None;
+    let site = Site { case, surroundings: None, ..setup.site() };
     let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
     begun(Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
 }
@@ -53,13 +56,12 @@ fn begun(start: Start) -> Result<Air, StudyError> {
     })
 }
 
-/// The planes of wind of the file that `setup` names.
+/// The recorded planes of wind that `setup` names.
 ///
 /// # Errors
 /// [`StudyError::File`] when it cannot be read.
 pub(crate) fn planes(setup: &Prepared) -> Result<Box<dyn Planes>, StudyError> {
-    let name = setup.case.wind.planes.as_deref().unwrap_or_default();
-    Ok(formats::turbulence_box::open(&setup.folder().join(name))?)
+    Ok(atmosphere::open_planes(&setup.case, setup.folder())?)
 }
 
 /// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the

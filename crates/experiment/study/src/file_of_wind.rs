@@ -1,6 +1,7 @@
 //! Files that the wind of a case comes from: that they can be read shows before any run begins.
 
 use crate::StudyError;
+use crate::atmosphere::{self, unreadable};
 use basis::Vector3;
 use farm::case::Case;
 use farm::plan::Plan;
@@ -8,7 +9,6 @@ use farm::solvers::WindSource;
 use farm::wind::{self, Recorded, Site};
 use flow::inflow::{Planes, TabulatedWind};
 use formats::case::{CaseFile, objection};
-use std::error::Error;
 use std::sync::Arc;
 
 /// Mean speed of a table of wind over `wind.speed`, less one, beyond which a reader must know (–).
@@ -43,37 +43,41 @@ pub(crate) fn table(
 /// The planes of wind that the case of `file` reads, opened; none where it reads none.
 ///
 /// # Errors
-/// [`StudyError::Case`] at `wind.planes`.
+/// [`StudyError::Case`] at `wind.planes` or `wind.precursor`.
 pub(crate) fn planes(file: &CaseFile) -> Result<Option<Box<dyn Planes>>, StudyError> {
     let case = &file.case;
     if case.wind_source() != WindSource::Planes && !wind::enters_from_file(case) {
         return Ok(None);
     }
-    let name = case.wind.planes.as_deref().unwrap_or_default();
-    match formats::turbulence_box::open(&file.folder().join(name)) {
+    match atmosphere::open_planes(case, file.folder()) {
         Ok(planes) => Ok(Some(planes)),
         Err(error) => {
             let message = unreadable(&error);
-            Err(StudyError::Case(objection(file, &["wind", "planes"], message)))
+            Err(StudyError::Case(objection(file, &["wind", key_of(case)], message)))
         }
     }
 }
 
-/// Key of the file that the wind of a case comes from, and its mean speed at hub height (m/s): `table` over
-/// `duration` (s), or `planes`; none where it comes from no file.
+/// Key of the file that the wind of `case` comes from, and its mean speed at hub height (m/s): that of `table`
+/// over the run, or of `planes`; none where it comes from no file.
 pub(crate) fn recorded_speed(
     table: Option<&TabulatedWind>,
     planes: Option<&dyn Planes>,
-    duration: f64,
+    case: &Case,
 ) -> Option<(&'static str, f64)> {
-    let of_table = table.map(|table| ("table", table.mean_speed(duration)));
-    of_table.or_else(|| planes.map(|planes| ("planes", planes.grid().speed)))
+    let of_table = table.map(|table| ("table", table.mean_speed(case.time.duration)));
+    of_table.or_else(|| planes.map(|planes| (key_of(case), planes.grid().speed)))
+}
+
+/// Key of the recorded planes of `case`.
+fn key_of(case: &Case) -> &'static str {
+    if case.wind.precursor.is_some() { "precursor" } else { "planes" }
 }
 
 /// `planes` of the case of `file` as they enter the domain of `site`; none where they do not.
 ///
 /// # Errors
-/// [`StudyError::Case`] at `wind.planes` where they do not fit.
+/// [`StudyError::Case`] at `wind.planes` or `wind.precursor` where they do not fit.
 pub(crate) fn at_inlet(
     file: &CaseFile,
     site: &Site,
@@ -83,8 +87,8 @@ pub(crate) fn at_inlet(
         return Ok(None);
     };
     let recorded = Recorded::new(site, planes).map_err(|error| {
-        let name = site.case.wind.planes.as_deref().unwrap_or_default();
-        StudyError::Case(objection(file, &["wind", "planes"], format!("{name}: {error}")))
+        let (key, name) = (key_of(site.case), name_of(site.case));
+        StudyError::Case(objection(file, &["wind", key], format!("{name}: {error}")))
     })?;
     Ok(Some(recorded))
 }
@@ -100,8 +104,8 @@ pub(crate) fn warnings(
     recorded: Option<Recorded>,
 ) -> Result<Vec<String>, StudyError> {
     let Some(recorded) = recorded else { return Ok(Vec::new()) };
-    let name = site.case.wind.planes.as_deref().unwrap_or_default();
     let mut warnings = recorded.warnings(site);
+    let Some(name) = &site.case.wind.planes else { return Ok(warnings) };
     let maker = formats::turbulence_box::maker_with_divergence(&file.folder().join(name))?;
     warnings.extend(maker.map(|maker| {
         format!(
@@ -110,6 +114,12 @@ pub(crate) fn warnings(
         )
     }));
     Ok(warnings)
+}
+
+/// What the case calls its recorded planes.
+fn name_of(case: &Case) -> &str {
+    let wind = &case.wind;
+    wind.precursor.as_deref().or(wind.planes.as_deref()).unwrap_or_default()
 }
 
 /// That `case` is laid out for another wind than that of `table`.
@@ -121,12 +131,4 @@ pub(crate) fn warning(case: &Case, table: Option<&TabulatedWind>) -> Option<Stri
             "wind.table blows with {mean:.2} m/s on average, and wind.speed = {speed} m/s: Strouhal numbers and the rotors' first speeds are those of wind.speed"
         )
     })
-}
-
-fn unreadable(error: &dyn Error) -> String {
-    let mut message = format!("the wind cannot be read: {error}");
-    if let Some(cause) = error.source() {
-        message += &format!(": {cause}");
-    }
-    message
 }

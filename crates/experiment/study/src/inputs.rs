@@ -1,6 +1,7 @@
 //! Files that decide the results of a case beside the case itself, for many cases that share them.
 
 use crate::StudyError;
+use crate::atmosphere;
 use crate::hosting;
 use crate::linear_laws;
 use crate::models;
@@ -65,11 +66,9 @@ impl Inputs {
         if let Some(name) = &case.wind.table {
             found.insert(name.clone(), self.wind(&folder.join(name))?);
         }
-        if let Some(name) = &case.wind.planes {
-            for path in formats::turbulence_box::files(&folder.join(name))? {
-                let named = path.strip_prefix(folder).unwrap_or(&path).display().to_string();
-                found.insert(named, self.wind(&path)?);
-            }
+        for path in atmosphere::files(case, folder)? {
+            let named = path.strip_prefix(folder).unwrap_or(&path).display().to_string();
+            found.insert(named, self.wind(&path)?);
         }
         Ok(found)
     }

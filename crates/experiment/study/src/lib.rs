@@ -16,6 +16,7 @@
 //! runs as values.
 
 mod air;
+mod atmosphere;
 mod azimuth_offset;
 mod channels;
 mod columns;

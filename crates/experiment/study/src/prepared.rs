@@ -2,6 +2,7 @@
 //! yet.
 
 use crate::StudyError;
+use crate::atmosphere;
 use crate::file_of_wind;
 use crate::hosting;
 use crate::linear_laws::{self, LawDigests};
@@ -11,7 +12,7 @@ use crate::warnings::{self, SetupWarning};
 use farm::assemble::{AssemblyError, TurbineModel, controller, misalignment, sensing};
 use farm::case::{Case, Run};
 use farm::operation::check_operation;
-use farm::wind::{self, Recorded, Site};
+use farm::wind::{self, Recorded, Site, Surroundings};
 use farm::{Plan, plan};
 use flow::Inflow;
 use formats::case::{CaseFile, objection};
@@ -42,6 +43,8 @@ pub struct Prepared {
     pub mean_inflow: Arc<dyn Inflow>,
     /// The planes of a file that enter, where they do.
     pub recorded: Option<Recorded>,
+    /// The atmosphere of the precursor that they come from, where they come from one.
+    pub surroundings: Option<Surroundings>,
     /// What a reader of the numbers must know.
     pub warnings: Vec<SetupWarning>,
     /// What the files of linear laws were when they were read.
@@ -79,8 +82,8 @@ impl Prepared {
         threads::check(file)?;
         let table = file_of_wind::table(file, &plan)?;
         let planes = file_of_wind::planes(file)?;
-        let (planes, duration) = (planes.as_deref(), case.time.duration);
-        let speed = file_of_wind::recorded_speed(table.as_deref(), planes, duration);
+        let planes = planes.as_deref();
+        let speed = file_of_wind::recorded_speed(table.as_deref(), planes, &case);
         check_operation(&case, &plan, &models, speed)?;
         let n_told = check_control(&case, &plan, &models)?;
         let warned = file_of_wind::warning(&case, table.as_deref());
@@ -89,7 +92,9 @@ impl Prepared {
             None => wind::without_turbulence(&case, &plan)?,
         };
         let mut warnings = warnings::of(&case, &plan);
-        let site = Site { case: &case, plan: &plan, models: &models };
+        let surroundings = atmosphere::surroundings(file, &plan)?;
+        let site =
+            Site { case: &case, plan: &plan, models: &models, surroundings: surroundings.as_ref() };
         let recorded = file_of_wind::at_inlet(file, &site, planes)?;
         let of_file = file_of_wind::warnings(file, &site, recorded)?;
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);
@@ -99,6 +104,7 @@ impl Prepared {
             .chain(machines.warnings)
             .chain(operation)
             .chain(warned)
+            .chain(surroundings.iter().flat_map(|air| air.warnings(&plan)))
             .chain(of_file);
         warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
@@ -113,6 +119,7 @@ impl Prepared {
             plan,
             mean_inflow,
             recorded,
+            surroundings,
             warnings,
         })
     }
@@ -144,7 +151,8 @@ impl Prepared {
 
     /// What the wind is made for.
     pub(crate) fn site(&self) -> Site<'_> {
-        Site { case: &self.case, plan: &self.plan, models: &self.models }
+        let surroundings = self.surroundings.as_ref();
+        Site { case: &self.case, plan: &self.plan, models: &self.models, surroundings }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Whether records on disk are those of the case at hand.
 
 use crate::StudyError;
+use crate::atmosphere;
 use crate::prepared::Prepared;
 use farm::case::Run;
 use farm::wind::Site;
@@ -170,8 +171,7 @@ impl Prepared {
             let digest = records::sha256_of_file(&self.folder().join(name), "the table of wind")?;
             digests.insert(name.clone(), digest);
         }
-        let Some(name) = self.case.wind.planes.as_ref() else { return Ok(digests) };
-        for path in formats::turbulence_box::files(&self.folder().join(name))? {
+        for path in atmosphere::files(&self.case, self.folder())? {
             let named = path.strip_prefix(self.folder()).unwrap_or(&path);
             let digest = records::sha256_of_file(&path, "the file of wind")?;
             digests.insert(named.display().to_string(), digest);

@@ -65,7 +65,8 @@ fn farm_of((case, plan, models): &(Case, Plan, Vec<TurbineModel>)) -> Farm<Air> 
         uniform_air(case)
     } else {
         let profile = Arc::new(MeanProfile::Uniform { speed: case.wind.speed });
-        let settings = assemble::lattice_settings(case, plan);
+        let site = farm::wind::Site { case, plan, models: &[], surroundings: None };
+        let settings = assemble::lattice_settings(&site);
         Box::new(Lattice::new(settings, profile).expect("such air can be"))
     };
     assemble::farm(case, &case.runs[0], plan, models, air).expect("such a farm can be")

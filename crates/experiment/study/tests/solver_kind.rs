@@ -169,7 +169,7 @@ fn farm_in(flow: &str, solver: Option<Solver>) -> (Case, Plan, Farm<Air>) {
     let footprints = BTreeMap::from([("nrel-5mw".to_owned(), model.footprint(case.wind.speed))]);
     let plan = farm::plan(&case, &footprints).expect("the layout fits");
     let models = vec![model.clone(), model];
-    let site = farm::wind::Site { case: &case, plan: &plan, models: &models };
+    let site = farm::wind::Site { case: &case, plan: &plan, models: &models, surroundings: None };
     let inflow = farm::wind::without_turbulence(&case, &plan).expect("a plain wind");
     let start = Start { site, inflow, planes: None, progress: &|_| ControlFlow::Continue(()) };
     let air = (solver.begin)(start).expect("such air can be");

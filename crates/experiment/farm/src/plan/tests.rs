@@ -40,6 +40,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             kinematic_viscosity: 1.5e-5,
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
+            precursor: None,
             beyond_planes: None,
             table: None,
             veer: 0.0,
@@ -74,6 +75,11 @@ fn case(positions: &[[f64; 2]]) -> Case {
             further: Vec::new(),
         },
     }
+}
+
+fn settings_of(case: &Case, plan: &Plan) -> LatticeSettings {
+    let site = crate::wind::Site { case, plan, models: &[], surroundings: None };
+    crate::assemble::lattice_settings(&site)
 }
 
 fn footprints() -> BTreeMap<String, Footprint> {
@@ -137,7 +143,7 @@ fn the_step_keeps_tips_and_wind_slow_and_minutes_whole() {
 fn the_lattice_is_computed_as_the_case_asks() {
     let settings_and_memory = |case: &Case| {
         let plan = plan(case, &footprints()).unwrap();
-        let settings = crate::assemble::lattice_settings(case, &plan);
+        let settings = settings_of(case, &plan);
         ((settings.stencil, settings.subgrid), (case.flow.solver.memory)(case, &plan))
     };
     let plain = case(&[[0.0, 0.0]]);

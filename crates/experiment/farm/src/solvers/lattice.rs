@@ -22,6 +22,10 @@ const CELLS_TO_WARN: f64 = 16.0;
 /// Memory of a cell whose eddies follow from the wind of neighbours (bytes): that wind and a viscosity, 16,
 /// and what lies beyond the ends of rows of some sixty cells and more.
 const EDDY_BYTES: u64 = 20;
+/// Memory of a cell for its temperature, and for the viscosity of its eddies besides (bytes), as precursors
+/// have it.
+const TEMPERATURE_BYTES: u64 = 34;
+const WARM_EDDY_BYTES: u64 = 4;
 
 /// Those of a box of cells, and that of finer ones in it.
 static KEYS: [Key; domain::KEYS.len() + 1] = {
@@ -42,6 +46,7 @@ pub static LATTICE: SolverKind = SolverKind {
     keys: &KEYS,
     check: |values| [refinement::check(values), domain::check_subgrid(values)].concat(),
     wind: WindSource::AtInlet,
+    stands_in_atmosphere: true,
     resolves_induction: true,
     has_wakes: true,
     smearing: |plan, index| Smearing {
@@ -58,7 +63,7 @@ pub static LATTICE: SolverKind = SolverKind {
     sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.base_interval()),
     plan: plan::in_a_box,
     reach: |_, _| 0.0,
-    memory: |_, plan| memory(plan),
+    memory,
     less_memory: "flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters",
     begin,
     begin_alone,
@@ -66,7 +71,7 @@ pub static LATTICE: SolverKind = SolverKind {
 };
 
 fn begin(start: Start) -> Result<Air, SolverError> {
-    let settings = lattice_settings(start.site.case, start.site.plan);
+    let settings = lattice_settings(&start.site);
     let boxes = &start.site.plan.boxes;
     if boxes.is_empty() {
         return Ok(Box::new(Lattice::new(settings, start.inflow)?));
@@ -74,9 +79,16 @@ fn begin(start: Start) -> Result<Air, SolverError> {
     Ok(Box::new(Refined::new(settings, boxes, start.inflow)?))
 }
 
-fn memory(plan: &Plan) -> u64 {
-    let of_eddies = if plan.method.subgrid.needs_neighbours() { EDDY_BYTES } else { 0 };
-    let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES + of_eddies;
+fn memory(case: &Case, plan: &Plan) -> u64 {
+    let is_stratified = case.wind.precursor.is_some();
+    let of_eddies = match (plan.method.subgrid.needs_neighbours(), is_stratified) {
+        (true, false) => EDDY_BYTES,
+        // Wind and a diffusivity are kept with the temperature already.
+        (true, true) => WARM_EDDY_BYTES,
+        (false, _) => 0,
+    };
+    let of_temperature = if is_stratified { TEMPERATURE_BYTES } else { 0 };
+    let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES + of_eddies + of_temperature;
     plan.cells() as u64 * bytes + plan.exchange_memory()
 }
 
@@ -112,7 +124,16 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
         let fix = "take turbulence_model = \"mann\", or flow.solver = \"turbulence\"";
         object("turbulence_model", Fault::Refused(why), fix);
     }
-    if wind.veer != 0.0 && wind.planes.is_some() {
+    let in_atmosphere = wind.precursor.is_some();
+    if in_atmosphere && !flow.values.tables(refinement::NAME).is_empty() {
+        let why = "boxes of finer cells hold no temperature";
+        let fix = "leave out [[flow.refinement]], or take the planes of the precursor alone, wind.planes = \"…/planes.bts\", in air without temperature";
+        object("precursor", Fault::Refused(why), fix);
+    }
+    if wind.veer != 0.0 && in_atmosphere {
+        let why = "the atmosphere of wind.precursor brings its own veer";
+        object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");
+    } else if wind.veer != 0.0 && wind.planes.is_some() {
         let why = "the file of wind.planes brings its own veer";
         object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");
     } else if wind.veer != 0.0 && flow.domain().sides == Sides::Slip {

@@ -49,6 +49,8 @@ pub struct SolverKind {
     pub check: fn(&Values) -> Vec<keys::Objection>,
     /// Which wind it takes in.
     pub wind: WindSource,
+    /// Whether its air can be the [atmosphere](Site::surroundings) of a precursor.
+    pub stands_in_atmosphere: bool,
     /// Whether the wind that it gives contains the rotors' induction; otherwise turbines make their own by
     /// momentum theory.
     pub resolves_induction: bool,

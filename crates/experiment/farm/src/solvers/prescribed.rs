@@ -17,6 +17,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     keys: &[],
     check: |_| Vec::new(),
     wind: WindSource::Deterministic,
+    stands_in_atmosphere: false,
     resolves_induction: false,
     has_wakes: false,
     smearing: |_, _| Smearing { length: 0.0, sample_spacing: 0.0 },

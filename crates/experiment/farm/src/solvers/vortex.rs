@@ -154,6 +154,7 @@ pub static VORTEX: SolverKind = SolverKind {
     limits: LIMITS,
     keys: &KEYS,
     wind: WindSource::Any,
+    stands_in_atmosphere: false,
     resolves_induction: true,
     has_wakes: true,
     uses_bound_vortices: true,

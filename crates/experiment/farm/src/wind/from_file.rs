@@ -91,9 +91,9 @@ pub enum ForeignWind {
     Grid(#[from] InflowError),
 }
 
-/// Whether the wind that enters the domain of `case` comes from a file of planes.
+/// Whether the wind that enters the domain of `case` comes from recorded planes.
 pub fn enters_from_file(case: &Case) -> bool {
-    case.wind_source() == WindSource::AtInlet && case.wind.planes.is_some()
+    case.wind_source() == WindSource::AtInlet && case.wind.brings_planes()
 }
 
 impl Recorded {
@@ -124,6 +124,8 @@ impl Recorded {
             }
             error => error.into(),
         })?;
+        // A temperature beside three components.
+        let memory = if site.surroundings.is_some() { memory / 3 * 4 } else { memory };
         if memory > TURBULENCE_MEMORY {
             let [needed, most] =
                 [memory, TURBULENCE_MEMORY].map(|bytes| bytes as f64 / 2_f64.powi(30));
@@ -135,10 +137,11 @@ impl Recorded {
     /// What a reader of the numbers must know of it in the domain of `site`.
     pub fn warnings(&self, site: &Site) -> Vec<String> {
         let mut warnings = Vec::new();
+        let key = if site.surroundings.is_some() { "precursor" } else { "planes" };
         let (found, speed) = (self.grid.speed, site.case.wind.speed);
         if (found / speed - 1.0).abs() > SPEED_TO_WARN {
             warnings.push(format!(
-                "wind.planes blows with {found:.2} m/s at hub height, and wind.speed = {speed} m/s: Strouhal numbers, the step and the rotors' \
+                "wind.{key} blows with {found:.2} m/s at hub height, and wind.speed = {speed} m/s: Strouhal numbers, the step and the rotors' \
                  first speeds are those of wind.speed"
             ));
         }
@@ -146,7 +149,7 @@ impl Recorded {
         let (blown_out, spin_up) = (entry.blown_out(&self.grid), site.case.time.spin_up);
         if blown_out > spin_up {
             warnings.push(format!(
-                "wind.planes does not repeat: at the start the last {:.0} m of the domain, from x = {:.0} m on, hold its first plane alone, the same \
+                "wind.{key} does not repeat: at the start the last {:.0} m of the domain, from x = {:.0} m on, hold its first plane alone, the same \
                  all along the wind; at the mean speed that air is blown out after {blown_out:.0} s, and time.spin_up = {spin_up} s is shorter: \
                  raise it to {:.0} s",
                 entry.extent[1] - entry.origin_x,
@@ -179,16 +182,26 @@ pub(super) fn entering(
     // Where nothing is chosen the grid covers all, up to the rounding of its places.
     let beyond = beyond(site, &*planes).unwrap_or(Beyond::Hold);
     let share = inflow_share(site.case, site.plan);
-    let profile = profile(site.case, site.plan);
+    let profile = match site.surroundings {
+        Some(surroundings) => surroundings.profile_at_ground(site.case, site.plan),
+        None => profile(site.case, site.plan),
+    };
     let goes_on = |done: f64| progress(done).is_continue();
     let inflow = RecordedInflow::read(planes, entry, profile, beyond, &goes_on)?;
-    Ok(inflow.with_share_of_mean(share))
+    let inflow = inflow.with_share_of_mean(share);
+    Ok(match site.surroundings {
+        Some(surroundings) => inflow.with_column_aloft(surroundings.column().clone()),
+        None => inflow,
+    })
 }
 
 /// What blows beyond the grid of `planes`: what the case says, or else what the file is made for, if
 /// anything.
 fn beyond(site: &Site, planes: &dyn Planes) -> Option<Beyond> {
-    site.case.wind.beyond_planes.or(planes.repeats_across().then_some(Beyond::Repeat))
+    let made_for = planes.repeats_across().then_some(Beyond::Repeat);
+    // What a precursor's air does above its planes is known, and beside them it is alike in the mean.
+    let made_for = made_for.or(site.surroundings.map(|_| Beyond::Mean));
+    site.case.wind.beyond_planes.or(made_for)
 }
 
 /// How the planes of `grid` lie in the domain of `site`: where prescribed wind would have them, so that the

@@ -5,12 +5,14 @@ mod around_rotors;
 mod at_inlet;
 mod from_file;
 mod length_scale;
+mod surroundings;
 mod walls;
 
 pub use around_rotors::prescribed;
 pub use at_inlet::entering;
 pub use from_file::{ForeignWind, Recorded, enters_from_file};
 pub use length_scale::{length_scale, usual_length_scale};
+pub use surroundings::{Surroundings, SurroundingsError};
 pub use walls::{inflow_share, wall_gain};
 
 use crate::assemble::TurbineModel;
@@ -31,6 +33,8 @@ pub struct Site<'a> {
     pub plan: &'a Plan,
     /// One for each turbine of the case, in its order.
     pub models: &'a [TurbineModel],
+    /// The atmosphere that its air is; none where air is alike everywhere.
+    pub surroundings: Option<&'a Surroundings>,
 }
 
 /// Turbulence that a case will have made.
@@ -78,7 +82,7 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 /// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
 /// where it is, where a file brings it, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
-    if case.wind_source() != WindSource::AtInlet || case.wind.planes.is_some() {
+    if case.wind_source() != WindSource::AtInlet || case.wind.brings_planes() {
         return None;
     }
     let Ground::Rough { roughness_length: ground } = case.flow.domain().ground else { return None };

@@ -354,7 +354,7 @@ pub(super) fn check_seeds(
         turbine.instruments == Instruments::default() && turbine.sensors.is_empty()
     };
     let is_still = |case: &Case| {
-        let is_made = case.wind_source() != WindSource::Planes && case.wind.planes.is_none();
+        let is_made = case.wind_source() != WindSource::Planes && !case.wind.brings_planes();
         let is_turbulent = is_made && case.wind.turbulence_intensity > 0.0;
         !is_turbulent && case.turbines.iter().all(is_exact)
     };
@@ -364,6 +364,6 @@ pub(super) fn check_seeds(
     let message = "`wind.seed` is swept, and there is no turbulence that it would change";
     let kind = ProblemKind::Unfit { message: message.to_owned() };
     let fix = "give wind.turbulence_intensity and a flow.solver that makes turbulence, `lattice` or `turbulence`; \
-               with recorded wind sweep wind.planes";
+               with recorded wind sweep wind.planes or wind.precursor";
     Err(vec![Problem::new(sources, 0..0, kind).with_fix(Some(fix.to_owned()))])
 }

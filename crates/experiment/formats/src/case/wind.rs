@@ -29,6 +29,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             _ => TurbulenceModel::Mann,
         },
         planes: section.as_ref().and_then(|section| section.optional_text("planes")),
+        precursor: section.as_ref().and_then(|section| section.optional_text("precursor")),
         beyond_planes: section.as_ref().and_then(beyond_of),
         table: section.as_ref().and_then(|section| section.optional_text("table")),
         veer: number("veer_deg_per_m").to_radians(),
@@ -89,10 +90,11 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
     if wind.table.is_some() {
         check_table(section, wind, flow);
     }
+    check_precursor(section, wind, flow);
     if wind.beyond_planes.is_some()
-        && (wind.planes.is_none() || flow.solver.wind.of(wind) != WindSource::AtInlet)
+        && (!wind.brings_planes() || flow.solver.wind.of(wind) != WindSource::AtInlet)
     {
-        let why = "it is for a file of wind.planes at the inlet of resolved flow".to_owned();
+        let why = "it is for recorded wind at the inlet of resolved flow".to_owned();
         let kind = ProblemKind::NoUse { key: section.key_path("beyond_planes"), why };
         note("beyond_planes", kind, "leave it out");
     }
@@ -103,6 +105,27 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
             note("event", ProblemKind::StartsTooLate { key, start, duration }, "begin it earlier");
         }
     }
+}
+
+/// Notes where the atmosphere of a precursor has no use, or leaves none to planes.
+fn check_precursor(section: &Section, wind: &Wind, flow: &Flow) {
+    if wind.precursor.is_none() {
+        return;
+    }
+    let (key, why, fix) = if !flow.solver.stands_in_atmosphere {
+        let why = format!(
+            "flow.solver = \"{}\" has neither temperature nor the earth's turning",
+            flow.solver.name
+        );
+        ("precursor", why, "leave it out, or use flow.solver = \"lattice\"")
+    } else if wind.planes.is_some() {
+        let why = "the planes are those of wind.precursor".to_owned();
+        ("planes", why, "leave one of the two out")
+    } else {
+        return;
+    };
+    let kind = ProblemKind::NoUse { key: section.key_path(key), why };
+    section.findings().note(section.span_of(key), kind, Some(fix.to_owned()));
 }
 
 /// Notes what a table of wind over time leaves no use for, and where it has none itself.
@@ -276,6 +299,9 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     writeln!(text, "turbulence_model = \"{model}\"")?;
     if let Some(planes) = &wind.planes {
         writeln!(text, "planes = {}", quoted(planes))?;
+    }
+    if let Some(precursor) = &wind.precursor {
+        writeln!(text, "precursor = {}", quoted(precursor))?;
     }
     if let Some(beyond) = wind.beyond_planes {
         let name = BEYOND.iter().find(|(_, one)| *one == beyond).map_or("", |(name, _)| name);

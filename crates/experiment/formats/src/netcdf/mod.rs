@@ -1,5 +1,5 @@
-//! Planes, scans of lidars, and statistics over time and height, as NetCDF files that xarray, ParaView and
-//! MATLAB open as they are; they come back, too.
+//! Planes, scans of lidars, statistics over time and height, and temperatures of recorded wind, as NetCDF
+//! files that xarray, ParaView and MATLAB open as they are; they come back, too.
 //!
 //! The classic format (64-bit offsets where needed), which needs no HDF5 on either side. Velocity stands over
 //! `time` or `phase`, `z`, `y`, `x`, the axis across the plane having one point, so that a plane lies where
@@ -15,6 +15,7 @@ mod scans;
 mod setting;
 mod statistics;
 mod stored_scans;
+mod temperature;
 
 pub(crate) use grid::{even, numbers_of};
 pub use instants::InstantWriter;
@@ -25,6 +26,7 @@ pub use scans::{ScanInstant, ScanSetting, ScanWriter, scan_bytes};
 pub use setting::{PlacedTurbine, PlaneSetting};
 pub use statistics::{Column, StoredStatistics, TimeHeight, read_statistics, write_statistics};
 pub use stored_scans::{StoredScans, read_scans};
+pub use temperature::{TemperatureReader, TemperatureWriter, plane_bytes as temperature_bytes};
 
 use crate::{FileError, atomic};
 use basis::records::{Plane, PlaneAxes};

@@ -177,6 +177,11 @@ impl PrecursorFolder {
         self.path.join("planes.bts")
     }
 
+    /// `temperature.nc`: that of the same planes.
+    pub fn temperature_path(&self) -> PathBuf {
+        self.path.join("temperature.nc")
+    }
+
     /// `checkpoint`.
     pub fn checkpoint_path(&self) -> PathBuf {
         self.path.join("checkpoint")
@@ -193,13 +198,15 @@ impl PrecursorFolder {
     }
 
     /// All of them, the result first.
-    fn files(&self) -> [PathBuf; 7] {
+    fn files(&self) -> [PathBuf; 9] {
         [
             self.result_path(),
             self.report_path(),
             self.checkpoint_path(),
             self.planes_path(),
             atomic::part_of(&self.planes_path()),
+            self.temperature_path(),
+            atomic::part_of(&self.temperature_path()),
             self.statistics_path(),
             self.case_path(),
         ]
@@ -229,7 +236,8 @@ impl PrecursorFolder {
     /// # Errors
     /// [`FileError::System`].
     pub fn reopen(&self) -> Result<(), FileError> {
-        let files = [self.result_path(), self.report_path(), self.planes_path()];
+        let files =
+            [self.result_path(), self.report_path(), self.planes_path(), self.temperature_path()];
         files.iter().try_for_each(|file| gone(fs::remove_file(file), file))
     }
 

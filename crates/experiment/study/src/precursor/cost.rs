@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 const CELL_BYTES: u64 = 146;
 /// What the viscosity of eddies takes besides, where it follows from the wind of neighbours.
 const EDDY_BYTES: u64 = 4;
-/// Bytes of a point of a plane: three components as they come, which stay for a longer record, and three of
-/// the full field.
-const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
+/// Bytes of a point of a plane: three components as they come, which stay for a longer record, three of the
+/// full field, and a temperature.
+const POINT_BYTES: u64 = (3 * (size_of::<f32>() + size_of::<i16>()) + size_of::<f32>()) as u64;
 /// Bytes that a level takes in a record of statistics, in the file and in each checkpoint.
 const LEVEL_BYTES: u64 = (OF_LEVELS.len() * size_of::<f64>()) as u64;
 /// Most cells of a trial along x and y (–), and how long it takes.

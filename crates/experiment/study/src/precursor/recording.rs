@@ -1,9 +1,12 @@
-//! Planes across the mean wind, taken out of a periodic box.
+//! Planes of wind and temperature across the mean wind, taken out of a periodic box.
 
 use basis::Vector3;
 use flow::WindField;
 use flow::inflow::{InflowError, PlaneGrid};
+use flow::lattice::Lattice;
 use formats::FileError;
+use formats::netcdf::TemperatureWriter;
+use formats::records::PrecursorFolder;
 use formats::turbulence_box::{self, Carried, WindRecorder};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -14,11 +17,28 @@ use std::path::Path;
 /// the cells, points lie between them and the box goes on beyond its sides: a plane no wider than the shorter
 /// side never meets itself.
 pub(super) struct Recording {
-    recorder: WindRecorder,
+    wind: WindRecorder,
+    temperature: TemperatureWriter,
     state: RecordingState,
+    /// Time between planes (s).
+    interval: f64,
     positions: Vec<Vector3>,
     velocities: Vec<Vector3>,
-    wind: Vec<[f32; 3]>,
+    plane: Vec<[f32; 3]>,
+    temperatures: Vec<f64>,
+}
+
+/// Air that planes are taken out of.
+pub(super) trait RecordedAir: WindField {
+    /// Potential temperature (K) at each of `positions` (m) into `temperatures`, of the same length.
+    fn temperatures(&self, positions: &[Vector3], temperatures: &mut [f64]);
+}
+
+impl RecordedAir for Lattice {
+    fn temperatures(&self, positions: &[Vector3], temperatures: &mut [f64]) {
+        let is_told = self.sample_temperature(positions, temperatures);
+        debug_assert!(is_told, "a precursor's air has a temperature");
+    }
 }
 
 /// What a checkpoint keeps of it.
@@ -26,8 +46,9 @@ pub(super) struct Recording {
 pub(super) struct RecordingState {
     /// Steps before the first plane (–).
     pub(super) first_plane: u64,
-    /// Bytes that are sure.
+    /// Bytes of wind that are sure, and planes of temperature (–).
     pub(super) n_bytes: u64,
+    pub(super) n_planes: u64,
     /// Direction along which u of the planes blows, towards east and north (–).
     pub(super) along: [f64; 2],
 }
@@ -45,36 +66,46 @@ pub(super) struct AtHub {
 }
 
 impl Recording {
-    /// Begins a record at `path` of planes as `grid` has them, across `wind` towards east and north (m/s).
+    /// Begins a record in `folder` of planes as `grid` has them, across `wind` towards east and north (m/s).
     ///
     /// # Errors
     /// [`FileError`].
     pub(super) fn begin(
-        path: &Path,
+        folder: &PrecursorFolder,
         grid: &PlaneGrid,
         first_plane: u64,
         [east, north]: [f64; 2],
     ) -> Result<Self, FileError> {
-        let recorder = WindRecorder::create(path, grid.n_y * grid.n_z)?;
+        let wind = WindRecorder::create(&folder.planes_path(), grid.n_y * grid.n_z)?;
+        let temperature = TemperatureWriter::create(&folder.temperature_path(), grid)?;
         let speed = east.hypot(north);
         let along = if speed > 0.0 { [east / speed, north / speed] } else { [1.0, 0.0] };
-        Ok(Self::new(recorder, grid, RecordingState { first_plane, n_bytes: 0, along }))
+        let state = RecordingState { first_plane, n_bytes: 0, n_planes: 0, along };
+        Ok(Self::new(wind, temperature, grid, state))
     }
 
-    /// Goes on with the record at `path` where `state` was kept.
+    /// Goes on with the record in `folder` where `state` was kept.
     ///
     /// # Errors
     /// [`FileError`].
     pub(super) fn resume(
-        path: &Path,
+        folder: &PrecursorFolder,
         grid: &PlaneGrid,
         state: RecordingState,
     ) -> Result<Self, FileError> {
-        let recorder = WindRecorder::resume(path, grid.n_y * grid.n_z, state.n_bytes)?;
-        Ok(Self::new(recorder, grid, state))
+        let n_points = grid.n_y * grid.n_z;
+        let wind = WindRecorder::resume(&folder.planes_path(), n_points, state.n_bytes)?;
+        let path = folder.temperature_path();
+        let temperature = TemperatureWriter::resume(&path, grid, state.n_planes)?;
+        Ok(Self::new(wind, temperature, grid, state))
     }
 
-    fn new(recorder: WindRecorder, grid: &PlaneGrid, state: RecordingState) -> Self {
+    fn new(
+        wind: WindRecorder,
+        temperature: TemperatureWriter,
+        grid: &PlaneGrid,
+        state: RecordingState,
+    ) -> Self {
         let [east, north] = state.along;
         let place = |row: usize, column: usize| {
             let left = grid.first[0] + column as f64 * grid.spacing[0];
@@ -85,8 +116,16 @@ impl Recording {
             .flat_map(|row| (0..grid.n_y).map(move |column| place(row, column)))
             .collect();
         let n_points = positions.len();
-        let velocities = vec![Vector3::ZERO; n_points];
-        Self { recorder, state, positions, velocities, wind: vec![[0.0; 3]; n_points] }
+        Self {
+            wind,
+            temperature,
+            state,
+            interval: grid.interval,
+            positions,
+            velocities: vec![Vector3::ZERO; n_points],
+            plane: vec![[0.0; 3]; n_points],
+            temperatures: vec![0.0; n_points],
+        }
     }
 
     /// Direction along which u blows, towards east and north (–).
@@ -94,19 +133,23 @@ impl Recording {
         self.state.along
     }
 
-    /// Keeps the wind of `field` now.
+    /// Keeps the wind and the temperature of `air` now.
     ///
     /// # Errors
     /// [`FileError`].
-    pub(super) fn add(&mut self, field: &impl WindField) -> Result<(), FileError> {
-        field.sample(&self.positions, &mut self.velocities);
+    pub(super) fn add(&mut self, air: &impl RecordedAir) -> Result<(), FileError> {
+        air.sample(&self.positions, &mut self.velocities);
+        air.temperatures(&self.positions, &mut self.temperatures);
         let [east, north] = self.state.along;
-        for (wind, velocity) in self.wind.iter_mut().zip(&self.velocities) {
+        for (wind, velocity) in self.plane.iter_mut().zip(&self.velocities) {
             let (u, v) =
                 (velocity.x * east + velocity.y * north, velocity.y * east - velocity.x * north);
             *wind = [u, v, velocity.z].map(|component| component as f32);
         }
-        self.recorder.write(&self.wind)
+        self.wind.write(&self.plane)?;
+        let time = self.state.n_planes as f64 * self.interval;
+        self.state.n_planes += 1;
+        self.temperature.write(time, &self.temperatures)
     }
 
     /// Puts all planes on the disk; gives what a checkpoint keeps.
@@ -114,11 +157,12 @@ impl Recording {
     /// # Errors
     /// [`FileError`].
     pub(super) fn flush(&mut self) -> Result<RecordingState, FileError> {
-        self.state.n_bytes = self.recorder.flush()?;
+        self.state.n_bytes = self.wind.flush()?;
+        self.state.n_planes = self.temperature.flush()?;
         Ok(self.state)
     }
 
-    /// Completes the file, for a hub at `hub_height` (m); the planes stay beside it for a longer record.
+    /// Completes the files, for a hub at `hub_height` (m); what a longer record goes on from stays.
     ///
     /// # Errors
     /// [`FileError`].
@@ -128,7 +172,8 @@ impl Recording {
         hub_height: f64,
         description: &str,
     ) -> Result<(), FileError> {
-        self.recorder.finish(grid, hub_height, Carried::Width, description)
+        self.wind.finish(grid, hub_height, Carried::Width, description)?;
+        self.temperature.finish()
     }
 }
 
@@ -172,6 +217,7 @@ pub(super) fn at_hub(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use formats::netcdf::TemperatureReader;
 
     /// A wind of 8 m/s that comes from the south-west, and grows to its left.
     struct Aslant;
@@ -186,10 +232,19 @@ mod tests {
         }
     }
 
+    impl RecordedAir for Aslant {
+        fn temperatures(&self, positions: &[Vector3], temperatures: &mut [f64]) {
+            for (position, temperature) in positions.iter().zip(temperatures) {
+                *temperature = 288.0 + 0.01 * position.z;
+            }
+        }
+    }
+
     #[test]
     fn planes_stand_across_the_wind_and_u_blows_along_it() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("planes.bts");
+        let folder = PrecursorFolder::new(folder.path());
+        let path = folder.planes_path();
         let grid = PlaneGrid {
             n_y: 5,
             n_z: 3,
@@ -200,13 +255,13 @@ mod tests {
             n_steps: 3,
             repeats: false,
         };
-        let mut recording = Recording::begin(&path, &grid, 7, [3.0, 3.0]).unwrap();
+        let mut recording = Recording::begin(&folder, &grid, 7, [3.0, 3.0]).unwrap();
         recording.add(&Aslant).unwrap();
         let state = recording.flush().unwrap();
-        assert_eq!((state.first_plane, state.n_bytes), (7, 5 * 3 * 12));
+        assert_eq!((state.first_plane, state.n_bytes, state.n_planes), (7, 5 * 3 * 12, 1));
         recording.add(&Aslant).unwrap();
         drop(recording);
-        let mut recording = Recording::resume(&path, &grid, state).unwrap();
+        let mut recording = Recording::resume(&folder, &grid, state).unwrap();
         recording.add(&Aslant).unwrap();
         recording.finish(&grid, 30.0, "a trial").unwrap();
         let found = at_hub(&path, 30.0).unwrap().unwrap();
@@ -220,5 +275,11 @@ mod tests {
         // From the right to the left looking downwind.
         assert!((plane[0][0] - 7.6).abs() < 1e-3 && (plane[4][0] - 8.4).abs() < 1e-3);
         assert!((plane[7][2] - 0.1).abs() < 1e-3);
+        let grid = PlaneGrid { n_steps: 2, ..grid };
+        let warm = TemperatureReader::open(&folder.temperature_path(), &grid).unwrap();
+        let mut temperatures = [0.0; 15];
+        warm.read(1, &mut temperatures).unwrap();
+        // Rows 20 m apart from 10 m on.
+        assert!((temperatures[0] - 288.1).abs() < 1e-4 && (temperatures[14] - 288.5).abs() < 1e-4);
     }
 }

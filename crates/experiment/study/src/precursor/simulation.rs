@@ -24,7 +24,7 @@ const RUN: &str = "run";
 const HISTORY: &str = "history";
 const AIR: &str = "air";
 /// Of what a checkpoint holds: the program's, and that of the sections above, which counts their changes.
-const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (state 2)");
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (state 3)");
 
 /// How a precursor ended.
 pub(super) enum Ending {
@@ -127,8 +127,7 @@ impl<'a> Simulation<'a> {
         }
         self.before = (state.step, state.wall_time);
         if let Some(kept) = kept {
-            let path = job.folder.planes_path();
-            self.recording = Some(Recording::resume(&path, &job.plan.grid, kept)?);
+            self.recording = Some(Recording::resume(&job.folder, &job.plan.grid, kept)?);
         }
         Ok(())
     }
@@ -221,8 +220,7 @@ impl<'a> Simulation<'a> {
         if drift.is_none_or(|drift| !drift.is_steady()) {
             observer.warned(UNSTEADY);
         }
-        let path = self.job.folder.planes_path();
-        let mut recording = Recording::begin(&path, &plan.grid, plan.first_plane, wind)?;
+        let mut recording = Recording::begin(&self.job.folder, &plan.grid, plan.first_plane, wind)?;
         recording.add(&self.air)?;
         self.recording = Some(recording);
         Ok(())

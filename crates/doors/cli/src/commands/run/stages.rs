@@ -50,8 +50,8 @@ pub(super) fn say_prepared(path: &Path, prepared: &Prepared) {
         let place = if is_shipped { ", which comes with the program" } else { "" };
         detail(&format!("read: {name}, {bytes}{place}"));
     }
-    if let Some(planes) = &case.wind.planes {
-        detail(&format!("read: wind {planes}"));
+    if let Some(name) = case.wind.planes.as_ref().or(case.wind.precursor.as_ref()) {
+        detail(&format!("read: wind {name}"));
     }
     detail(&format!(
         "built: {} turbines, {} runs; flow solver {}, domain {} × {} × {} cells{}, {} steps of {:.4} s",

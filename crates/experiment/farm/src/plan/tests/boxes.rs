@@ -173,7 +173,7 @@ proptest! {
         let mut case = boxed(&[[0.0, 0.0], [place.0, place.1]], &boxes);
         case.flow.values.set("cells_per_diameter", 8.0);
         let Ok(plan) = plan(&case, &footprints()) else { return Ok(()) };
-        let settings = crate::assemble::lattice_settings(&case, &plan);
+        let settings = settings_of(&case, &plan);
         prop_assert_eq!(flow::lattice::refinement::check(&settings, &plan.boxes), Ok(()));
         for (foot, level) in plan.positions.iter().zip(&plan.levels) {
             let hub = [foot.x, foot.y, 150.0];

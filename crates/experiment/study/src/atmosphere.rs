@@ -1,0 +1,178 @@
+//! The recorded wind of a case, and the atmosphere of the precursor that it may come from.
+
+use crate::StudyError;
+use farm::Plan;
+use farm::case::Case;
+use farm::wind::Surroundings;
+use flow::inflow::{ColumnLevel, InflowError, PlaneGrid, Planes};
+use formats::case::{CaseFile, objection, parse_precursor};
+use formats::netcdf::{TemperatureReader, read_statistics};
+use formats::records::PrecursorFolder;
+use formats::{FileError, atomic, turbulence_box};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+const WHAT: &str = "the precursor";
+const AGAIN: &str = "make the precursor again with `wakemix inflow precursor CASE --overwrite`";
+/// What drove the box over time, in its statistics.
+const GEOSTROPHIC: [&str; 2] = ["geostrophic_speed", "geostrophic_direction"];
+
+/// Planes of wind with their temperature.
+struct WarmPlanes {
+    wind: Box<dyn Planes>,
+    temperature: TemperatureReader,
+}
+
+impl Planes for WarmPlanes {
+    fn grid(&self) -> PlaneGrid {
+        self.wind.grid()
+    }
+
+    fn read(&mut self, step: usize, values: &mut [[f32; 3]]) -> Result<(), InflowError> {
+        self.wind.read(step, values)
+    }
+
+    fn read_temperature(&mut self, step: usize, values: &mut [f32]) -> Result<bool, InflowError> {
+        self.temperature.read(step, values)?;
+        Ok(true)
+    }
+}
+
+/// The folder of the precursor of `case`, whose paths are relative to `folder`; none where it names none.
+fn folder_of(case: &Case, folder: &Path) -> Option<PrecursorFolder> {
+    Some(PrecursorFolder::new(&folder.join(case.wind.precursor.as_ref()?)))
+}
+
+/// Paths of the files of recorded wind that `case` reads, relative to `folder`; none where it reads none.
+///
+/// # Errors
+/// [`FileError`] for a name that is none of such a file, and for a header that cannot be read.
+pub(crate) fn files(case: &Case, folder: &Path) -> Result<Vec<PathBuf>, FileError> {
+    if let Some(of) = folder_of(case, folder) {
+        return Ok(vec![of.planes_path(), of.temperature_path(), of.result_path()]);
+    }
+    let Some(name) = &case.wind.planes else { return Ok(Vec::new()) };
+    turbulence_box::files(&folder.join(name))
+}
+
+/// The recorded planes that `case` names, relative to `folder`, opened.
+///
+/// # Errors
+/// [`FileError`] when they cannot be read.
+pub(crate) fn open_planes(case: &Case, folder: &Path) -> Result<Box<dyn Planes>, FileError> {
+    let Some(of) = folder_of(case, folder) else {
+        let name = case.wind.planes.as_deref().unwrap_or_default();
+        return turbulence_box::open(&folder.join(name));
+    };
+    check_complete(&of)?;
+    let wind = turbulence_box::open(&of.planes_path())?;
+    let temperature = TemperatureReader::open(&of.temperature_path(), &wind.grid())?;
+    Ok(Box::new(WarmPlanes { wind, temperature }))
+}
+
+/// Whether the precursor in `folder` is there, and complete.
+fn check_complete(folder: &PrecursorFolder) -> Result<(), FileError> {
+    if folder.is_complete() {
+        return Ok(());
+    }
+    let (problem, fix) = if folder.holds_results() {
+        ("it is not complete", "finish it: wakemix inflow precursor CASE --resume")
+    } else {
+        ("there is none", "make it: wakemix inflow precursor CASE, or name its folder")
+    };
+    Err(FileError::content(WHAT, folder.path(), problem, fix))
+}
+
+/// The atmosphere of the precursor of the case of `file`, laid out as `plan`; none where it names none.
+///
+/// # Errors
+/// [`StudyError::Case`] at the key with which it does not fit, or at `wind.precursor`.
+pub(crate) fn surroundings(
+    file: &CaseFile,
+    plan: &Plan,
+) -> Result<Option<Surroundings>, StudyError> {
+    let refuse = |key: &[&str], message| StudyError::Case(objection(file, key, message));
+    let Some(folder) = folder_of(&file.case, file.folder()) else { return Ok(None) };
+    let found =
+        read(&folder).map_err(|error| refuse(&["wind", "precursor"], unreadable(&error)))?;
+    let fits = found.check(&file.case, plan);
+    fits.map_err(|error| refuse(&error.key(), error.to_string()))?;
+    Ok(Some(found))
+}
+
+/// The atmosphere that the precursor in `folder` has left.
+fn read(folder: &PrecursorFolder) -> Result<Surroundings, FileError> {
+    check_complete(folder)?;
+    let path = folder.case_path();
+    let text = atomic::read_text(&path, "the precursor's file")?;
+    let precursor = parse_precursor(&path, &text, &[])
+        .map_err(|error| FileError::content(WHAT, &path, error.to_string(), AGAIN))?
+        .precursor;
+    let (plan, result) = (precursor.plan(), folder.read_result()?);
+    let begin = plan.time(plan.first_plane);
+    let driving = geostrophic(folder, begin)?;
+    let along = |wind| turned(wind, result.planes.direction_deg);
+    let levels = result.profile.iter().map(|row| ColumnLevel {
+        height: row.height,
+        wind: along([row.speed, row.direction_deg]),
+        temperature: row.temperature,
+    });
+    let found = Surroundings::new(&precursor, begin, levels.collect(), along(driving));
+    found.ok_or_else(|| {
+        let problem = "its record holds no means over height".to_owned();
+        FileError::content(WHAT, &folder.result_path(), problem, AGAIN)
+    })
+}
+
+/// Wind of a speed (m/s) that comes from a direction (deg), along x and y (m/s) of planes whose x blows from
+/// `from` (deg).
+fn turned([speed, direction]: [f64; 2], from: f64) -> [f64; 2] {
+    // Directions grow clockwise, y is to the left.
+    let (s, c) = (from - direction).to_radians().sin_cos();
+    [speed * c, speed * s]
+}
+
+/// Mean speed of the geostrophic wind (m/s) from `begin` (s) on, when planes were recorded, and where it came
+/// from (deg).
+fn geostrophic(folder: &PrecursorFolder, begin: f64) -> Result<[f64; 2], FileError> {
+    let path = folder.statistics_path();
+    let statistics = read_statistics(&path, &GEOSTROPHIC, &[])?;
+    let [speeds, directions] = GEOSTROPHIC.map(|name| statistics.column(name));
+    let (mut sum, mut n) = ([0.0; 2], 0);
+    for ((time, speed), direction) in statistics.times.iter().zip(speeds).zip(directions) {
+        if *time > begin - 1e-6 {
+            let (s, c) = direction.to_radians().sin_cos();
+            sum = [sum[0] + speed * s, sum[1] + speed * c];
+            n += 1;
+        }
+    }
+    if n == 0 {
+        let problem = format!("they tell nothing of the time from {begin} s on");
+        return Err(FileError::content("the precursor's statistics", &path, problem, AGAIN));
+    }
+    let [east, north] = sum.map(|sum| sum / f64::from(n));
+    Ok([east.hypot(north), east.atan2(north).to_degrees()])
+}
+
+/// Why wind cannot be read, with the cause.
+pub(crate) fn unreadable(error: &dyn Error) -> String {
+    let mut message = format!("the wind cannot be read: {error}");
+    if let Some(cause) = error.source() {
+        message += &format!(": {cause}");
+    }
+    message
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wind_that_veers_clockwise_blows_to_the_right_of_the_planes() {
+        let speed = 8.0;
+        for (direction, expected) in [(240.0, [8.0, 0.0]), (270.0, [6.9282, -4.0])] {
+            let found = turned([speed, direction], 240.0);
+            assert!((0..2).all(|axis| (found[axis] - expected[axis]).abs() < 1e-4), "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A study in the atmosphere of its precursor: planes with temperature come in, the air is stratified and on
+//! a rotating earth, and what does not fit is refused.
+
+mod small;
+
+use basis::Vector3;
+use basis::records::PlaneAxes;
+use farm::assemble::lattice_settings;
+use farm::wind::Site;
+use flow::inflow::PlaneGrid;
+use flow::lattice::Lattice;
+use flow::{FlowSolver, Inflow};
+use formats::netcdf::TemperatureReader;
+use formats::records::{PrecursorFolder, RunFolder, read_manifest};
+use formats::turbulence_box;
+use small::{HALFWAY, STOP, written};
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use study::precursor::{PrecursorOptions, PrecursorOutcome, precursor};
+use study::{Outcome, Outputs, Prepared, Silent, StudyError, StudyOptions};
+use tempfile::TempDir;
+
+/// A layer of 150 m under an inversion, in 40 × 40 × 20 cells.
+const PRECURSOR: &str = "name = \"layer\"\n\
+    [box]\nlength = 600\nwidth = 600\nheight = 300\ncell = 15\n\
+    [atmosphere]\nlatitude_deg = 52.6\nroughness_length = 0.01\ngeostrophic_wind = 9.0\n\
+    geostrophic_direction_deg = 240\ninversion_height = 150\ninversion_strength = 2\ninversion_depth = 25\n\
+    lapse_rate = 0.003\n\
+    [time]\nspin_up = 90\nrecord = 60\nstatistics_interval = 10\n\
+    [planes]\nhub_height = 90\nwidth = 255\n";
+
+const CASE: &str = r#"
+name = "in-layer"
+[wind]
+speed = 8.2
+turbulence_intensity = 0.05
+precursor = "layer"
+[flow]
+cells_per_diameter = 8
+upstream_diameters = 1.0
+downstream_diameters = 2.0
+width_diameters = 2.0
+height_diameters = 2.0
+ground = { roughness_length = 0.01 }
+[time]
+spin_up = 5.0
+duration = 20.0
+[[turbine]]
+name = "T1"
+model = "nrel-5mw"
+position_diameters = [0.0, 0.0]
+structure = "rigid"
+[[run]]
+name = "baseline"
+[output]
+crosswind_diameters = [1.0]
+"#;
+
+/// The case beside the folder of its precursor.
+fn study() -> TempDir {
+    let folder = written(CASE);
+    let case = folder.path().join("layer.toml");
+    fs::write(&case, PRECURSOR).expect("a file");
+    let output = Some(folder.path().join("layer"));
+    let options = PrecursorOptions { case, output, ..PrecursorOptions::default() };
+    let outcome = precursor(&options, &AtomicBool::new(false), &mut Silent);
+    assert!(matches!(outcome, Ok(PrecursorOutcome::Done { .. })), "{outcome:?}");
+    folder
+}
+
+fn prepared(folder: &Path, overrides: &[&str]) -> Result<Prepared, StudyError> {
+    let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+    Prepared::read(&folder.join("case.toml"), &overrides)
+}
+
+#[track_caller]
+fn refused(folder: &Path, overrides: &[&str]) -> String {
+    match prepared(folder, overrides) {
+        Err(StudyError::Case(error)) => error.to_lines(),
+        Err(error) => panic!("{error:?}"),
+        Ok(_) => panic!("it is taken"),
+    }
+}
+
+/// Temperatures of plane number `step` of the precursor in `folder`, whose wind lies on `grid`.
+fn recorded(folder: &Path, grid: &PlaneGrid, step: usize) -> Vec<f32> {
+    let path = PrecursorFolder::new(&folder.join("layer")).temperature_path();
+    let mut values = vec![0.0; grid.n_y * grid.n_z];
+    TemperatureReader::open(&path, grid).expect("a file").read(step, &mut values).expect("a plane");
+    values
+}
+
+#[test]
+fn the_air_has_the_temperature_and_the_turning_of_the_precursor() {
+    let folder = study();
+    let setup = prepared(folder.path(), &[]).expect("a sound case");
+    assert_eq!(setup.recorded.expect("planes").memory % 16, 0);
+    let ready = setup.ready().expect("it can begin");
+    let setup = &ready.prepared;
+    let planes = PrecursorFolder::new(&folder.path().join("layer")).planes_path();
+    let grid = turbulence_box::open(&planes).expect("a file").grid();
+    let plan = &setup.plan;
+    let inlet = plan.origin.x - 0.5 * plan.spacing;
+
+    // At the inlet, when a plane passes it on its way from half its width upstream.
+    let origin_x = 0.5 * (grid.across()[1] - grid.across()[0]);
+    for step in [21, 30] {
+        let time = step as f64 * grid.interval + (inlet - origin_x) / grid.speed;
+        let expected = recorded(folder.path(), &grid, step);
+        for (y, z) in [(3, 1), (9, 8)] {
+            let place = [grid.first[0] + 15.0 * y as f64, grid.first[1] + 15.0 * z as f64];
+            let (place, mut found) = ([Vector3::new(inlet, place[0], place[1])], [0.0]);
+            assert!(ready.inflow.sample_temperature(time, &place, &mut found));
+            let expected = f64::from(expected[z * grid.n_y + y]);
+            assert!((found[0] - expected).abs() < 1e-2, "{} {expected}", found[0]);
+        }
+    }
+    // Above the planes, which end under the inversion, it is warmer as the layer's own mean is.
+    let air = setup.surroundings.as_ref().expect("an atmosphere");
+    let (place, mut found) = ([Vector3::new(inlet, 0.0, 200.0)], [0.0]);
+    assert!(ready.inflow.sample_temperature(10.0, &place, &mut found));
+    assert!((found[0] - air.column().at(200.0).temperature).abs() < 0.1, "{}", found[0]);
+
+    let (case, models) = (&setup.case, setup.models.as_slice());
+    let settings = lattice_settings(&Site { case, plan, models, surroundings: Some(air) });
+    let atmosphere = settings.atmosphere.as_ref().expect("an atmosphere");
+    assert!((atmosphere.coriolis - 1.1586e-4).abs() < 1e-7);
+    let flow::lattice::atmosphere::Driving::Geostrophic(wind) = atmosphere.driving;
+    assert!((wind[0].hypot(wind[1]) - 9.0).abs() < 1e-6 && wind[0] > 8.8, "{wind:?}");
+
+    // The wind far above is geostrophic, and stays so.
+    let mut lattice = Lattice::new(settings, Arc::clone(&ready.inflow) as Arc<dyn Inflow>)
+        .expect("such air can be");
+    let n_steps = (15.0 / plan.interval).round();
+    lattice.advance(n_steps * plan.interval, &[]).expect("it stays finite");
+    let mut levels = lattice.level_statistics();
+    let top = levels.pop().expect("levels").velocity;
+    assert!((top[0] - wind[0]).abs() < 0.1 && (top[1] - wind[1]).abs() < 0.1, "{top:?} {wind:?}");
+}
+
+#[test]
+fn the_memory_of_its_temperature_is_told() {
+    let folder = study();
+    // Rows of 135 cells: the ends of shorter ones weigh more.
+    let fine = prepared(folder.path(), &["flow.cells_per_diameter=45"]).expect("a sound case");
+    let (case, plan, models) = (&fine.case, &fine.plan, fine.models.as_slice());
+    let site = Site { case, plan, models, surroundings: fine.surroundings.as_ref() };
+    let air = Lattice::new(lattice_settings(&site), Arc::clone(&fine.mean_inflow));
+    let told = (case.flow.solver.memory)(case, plan) as f64;
+    let share = told / air.expect("such air can be").memory() as f64;
+    assert!((0.9..1.1).contains(&share), "{share} of the memory is told");
+}
+
+/// What a run left in its series and planes.
+fn left(run: &Path) -> Vec<Vec<u8>> {
+    ["series.csv", "planes/hub-height-mean.nc", "planes/1D-last.nc"]
+        .map(|name| fs::read(run.join(name)).expect(name))
+        .to_vec()
+}
+
+#[test]
+fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
+    let folder = study();
+    let on = |threads: usize, output: &str| StudyOptions {
+        output: Some(folder.path().join(output)),
+        overrides: vec![format!("flow.threads={threads}")],
+        ..small::options(folder.path())
+    };
+    small::done(&on(1, "whole"));
+    let outputs = Outputs::standard().with(&HALFWAY);
+    let mut again = on(2, "stopped");
+    let outcome = study::run_with(&again, &outputs, &STOP, &mut Silent);
+    assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
+    again.resume = true;
+    small::done(&again);
+    let [whole, stopped] = ["whole", "stopped"].map(|name| folder.path().join(name));
+    assert!(left(&whole.join("baseline")) == left(&stopped.join("baseline")), "other bits");
+    let manifest = read_manifest(&RunFolder::new(&stopped, "baseline")).expect("a manifest");
+    let files = ["layer/planes.bts", "layer/precursor.json", "layer/temperature.nc"];
+    assert_eq!(manifest.wind_sha256.keys().collect::<Vec<_>>(), files);
+    let plane = |run: &Path| {
+        let path = run.join("baseline/planes/1D-last.nc");
+        let plane = formats::netcdf::read_plane(&path).expect("a plane");
+        assert_eq!(plane.axes, PlaneAxes::Crosswind);
+        plane.velocity[0].iter().map(|u| f64::from(*u)).sum::<f64>()
+            / plane.velocity[0].len() as f64
+    };
+    assert!((4.0..9.0).contains(&plane(&whole)));
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_key_and_fix() {
+    let folder = study();
+    let at = |overrides: &[&str]| refused(folder.path(), overrides);
+    for (overrides, expected) in [
+        (&["flow.ground=\"slip\""][..], "write flow.ground = { roughness_length = 0.01 }"),
+        (
+            &["flow.height_diameters=4"],
+            "the domain is 504 m high and the precursor's box 300 m: lower flow.height_diameters to 2.38",
+        ),
+        (&["wind.precursor=\"nowhere\""], "there is none"),
+        (&["wind.planes=\"layer/planes.bts\""], "the planes are those of wind.precursor"),
+        (&["wind.veer_deg_per_m=0.05"], "the atmosphere of wind.precursor brings its own veer"),
+        (
+            &["flow.solver=\"vortex\""],
+            "flow.solver = \"vortex\" has neither temperature nor the earth's turning",
+        ),
+        (&["time.duration=60"], "does not repeat, and the run needs"),
+    ] {
+        let lines = at(overrides);
+        assert!(lines.contains(expected), "{overrides:?}: {lines}");
+    }
+    let layer = PrecursorFolder::new(&folder.path().join("layer"));
+    let whole = fs::read(layer.temperature_path()).expect("a file");
+    fs::write(layer.temperature_path(), &whole[..whole.len() / 2]).expect("a file");
+    assert!(at(&[]).contains("temperature"), "{}", at(&[]));
+    fs::remove_file(layer.temperature_path()).expect("a file");
+    assert!(at(&[]).contains("temperature.nc"), "{}", at(&[]));
+    fs::remove_file(layer.result_path()).expect("a file");
+    assert!(at(&[]).contains("it is not complete"), "{}", at(&[]));
+}
