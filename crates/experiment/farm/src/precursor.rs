@@ -1,12 +1,14 @@
 //! A precursor: a periodic box of atmosphere that is spun up, and from which planes of wind are taken for
 //! studies.
 
+mod air_box;
 mod driving;
 mod faults;
 mod hub_control;
 mod plan;
 mod start;
 
+pub use air_box::{AirBox, Drive, hub_wind};
 use flow::lattice::SubgridModel;
 pub use hub_control::HubControl;
 pub use plan::PrecursorPlan;

@@ -1,5 +1,6 @@
 //! What the levels of a box tell at an instant: over height, and of the layer as a whole.
 
+use farm::precursor::hub_wind;
 use flow::lattice::atmosphere::{
     LevelStatistics, friction_velocity, ground_heat_flux, layer_depth,
 };
@@ -181,16 +182,6 @@ fn inversion(levels: &[LevelStatistics]) -> f64 {
     let rise = |pair: &[LevelStatistics]| pair[1].temperature - pair[0].temperature;
     let steepest = levels.windows(2).reduce(|a, b| if rise(b) > rise(a) { b } else { a });
     steepest.map_or(f64::NAN, |pair| 0.5 * (pair[0].height + pair[1].height))
-}
-
-/// Mean wind towards east and north (m/s) at the height `hub` (m), linear between levels.
-pub(super) fn hub_wind(levels: &[LevelStatistics], hub: f64) -> [f64; 2] {
-    let above = levels.partition_point(|level| level.height <= hub);
-    let at = |index: usize| horizontal(&levels[index.min(levels.len() - 1)]);
-    let (Some(low), true) = (above.checked_sub(1), above < levels.len()) else { return at(above) };
-    let share = (hub - levels[low].height) / (levels[above].height - levels[low].height);
-    let [low, high] = [at(low), at(above)];
-    std::array::from_fn(|axis| low[axis] + share * (high[axis] - low[axis]))
 }
 
 #[cfg(test)]

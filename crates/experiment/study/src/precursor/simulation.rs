@@ -3,13 +3,12 @@
 use super::Job;
 use super::error::PrecursorError;
 use super::history::History;
-use super::levels::{Instant as BoxInstant, direction, hub_wind};
+use super::levels::{Instant as BoxInstant, direction};
 use super::observer::{PrecursorObserver, PrecursorProgress};
 use super::recording::{Recording, RecordingState};
 use super::result::UNSTEADY;
-use farm::precursor::HubControl;
-use flow::lattice::Lattice;
-use flow::{FlowError, FlowSolver};
+use farm::precursor::{AirBox, Drive};
+use flow::FlowError;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use formats::records::PrecursorResult;
 use serde::{Deserialize, Serialize};
@@ -40,22 +39,15 @@ struct RunState {
     step: u64,
     wall_time: f64,
     recording: Option<RecordingState>,
-    /// The geostrophic wind that drives the air, towards east and north (m/s).
-    geostrophic: [f64; 2],
-    /// State of the control that has set it; none without one.
-    control: Option<[f64; 2]>,
+    drive: Drive,
 }
 
 /// A precursor under way.
 pub(super) struct Simulation<'a> {
     job: &'a Job,
-    air: Lattice,
+    air: AirBox,
     history: History,
     recording: Option<Recording>,
-    /// The geostrophic wind that drives the air, towards east and north (m/s).
-    geostrophic: [f64; 2],
-    /// What sets it, where the wind at hub height is held.
-    control: Option<HubControl>,
     /// What of the machine decides its bits, in words.
     backend: String,
     started: Instant,
@@ -69,20 +61,13 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// [`PrecursorError`]; what the folder holds is untouched then.
     pub(super) fn begin(job: &'a Job) -> Result<Self, PrecursorError> {
-        let precursor = &job.file.precursor;
-        let air = Lattice::new(precursor.settings(&job.plan), precursor.start())?;
-        let backend = format!("{}, air {}", flow::numerics(), air.backend());
-        let geostrophic = precursor.geostrophic();
-        let wanted = precursor.held_wind();
-        let control =
-            wanted.map(|wanted| HubControl::new(wanted, precursor.coriolis(), geostrophic));
+        let air = AirBox::new(&job.file.precursor, &job.plan)?;
+        let backend = format!("{}, air {}", flow::numerics(), air.air().backend());
         let mut simulation = Self {
             job,
             air,
             history: History::default(),
             recording: None,
-            geostrophic,
-            control,
             backend,
             started: Instant::now(),
             before: (0, 0.0),
@@ -119,12 +104,8 @@ impl<'a> Simulation<'a> {
         }
         let kept = job.recorded(&state)?;
         let air = &mut self.air;
-        reader.stream(AIR, |bytes| air.read_state(bytes))?;
-        if let (Some(control), Some(integral)) = (&mut self.control, state.control) {
-            control.set_state(integral);
-            self.geostrophic = state.geostrophic;
-            air.drive(self.geostrophic);
-        }
+        reader.stream(AIR, |bytes| air.air_mut().read_state(bytes))?;
+        air.restore(state.drive);
         self.before = (state.step, state.wall_time);
         if let Some(kept) = kept {
             self.recording = Some(Recording::resume(&job.folder, &job.plan.grid, kept)?);
@@ -145,7 +126,7 @@ impl<'a> Simulation<'a> {
         self.begin_recording(observer)?;
         let mut last_checkpoint = Instant::now();
         let mut last_progress: Option<Instant> = None;
-        while self.air.n_steps() < plan.n_steps {
+        while self.air.air().n_steps() < plan.n_steps {
             if stop.load(Ordering::Relaxed) {
                 self.checkpoint()?;
                 return Ok(Ending::Interrupted);
@@ -165,13 +146,10 @@ impl<'a> Simulation<'a> {
 
     fn step(&mut self, observer: &mut dyn PrecursorObserver) -> Result<(), PrecursorError> {
         let plan = &self.job.plan;
-        if let Err(error) = self.air.advance(plan.interval, &[]) {
+        if let Err(error) = self.air.step() {
             return Err(self.diverged(error));
         }
-        let step = self.air.n_steps();
-        if step.is_multiple_of(plan.control_stride) {
-            self.hold_wind();
-        }
+        let step = self.air.air().n_steps();
         if step.is_multiple_of(plan.statistics_stride) {
             self.tell_levels();
         }
@@ -180,29 +158,18 @@ impl<'a> Simulation<'a> {
         }
         match &mut self.recording {
             Some(recording) if (step - plan.first_plane).is_multiple_of(plan.plane_stride) => {
-                Ok(recording.add(&self.air)?)
+                Ok(recording.add(self.air.air())?)
             }
             _ => Ok(()),
         }
     }
 
-    /// Where the wind at hub height is held, the control of it takes another look, and drives the air. It
-    /// goes on while planes are recorded, or a longer spin-up would not have the same bits as one at once.
-    fn hold_wind(&mut self) {
-        let (Some(control), plan) = (&mut self.control, &self.job.plan) else { return };
-        let hub = self.job.file.precursor.planes.hub_height;
-        let below = (hub / plan.spacing - 0.5).floor().max(0.0) as usize;
-        let wind = hub_wind(&self.air.statistics_of(below..below + 2), hub);
-        self.geostrophic = control.update(wind, plan.time(plan.control_stride));
-        self.air.drive(self.geostrophic);
-    }
-
     /// Adds what the levels tell now to the history.
     fn tell_levels(&mut self) {
         let hub = self.job.file.precursor.planes.hub_height;
-        let levels = self.air.level_statistics();
-        let instant = BoxInstant { levels: &levels, hub, geostrophic: self.geostrophic };
-        self.history.add(self.air.time(), instant);
+        let levels = self.air.air().level_statistics();
+        let geostrophic = self.air.drive().geostrophic;
+        self.history.add(self.air.air().time(), BoxInstant { levels: &levels, hub, geostrophic });
     }
 
     /// Begins the record with its first plane, where that is due now.
@@ -211,7 +178,7 @@ impl<'a> Simulation<'a> {
         observer: &mut dyn PrecursorObserver,
     ) -> Result<(), PrecursorError> {
         let plan = &self.job.plan;
-        if self.recording.is_some() || self.air.n_steps() != plan.first_plane {
+        if self.recording.is_some() || self.air.air().n_steps() != plan.first_plane {
             return Ok(());
         }
         let wind = self.job.wind_of_spin_up(&self.history);
@@ -221,7 +188,7 @@ impl<'a> Simulation<'a> {
             observer.warned(UNSTEADY);
         }
         let mut recording = Recording::begin(&self.job.folder, &plan.grid, plan.first_plane, wind)?;
-        recording.add(&self.air)?;
+        recording.add(self.air.air())?;
         self.recording = Some(recording);
         Ok(())
     }
@@ -231,17 +198,16 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// [`PrecursorError::Diverged`] for air that is no longer valid, [`PrecursorError::File`].
     fn checkpoint(&mut self) -> Result<(), PrecursorError> {
-        if let Err(error) = self.air.check() {
+        if let Err(error) = self.air.air_mut().check() {
             return Err(self.diverged(error));
         }
         self.write_statistics()?;
         let recording = self.recording.as_mut().map(Recording::flush).transpose()?;
         let state = RunState {
-            step: self.air.n_steps(),
+            step: self.air.air().n_steps(),
             wall_time: self.wall_time(),
             recording,
-            geostrophic: self.geostrophic,
-            control: self.control.map(|control| control.state()),
+            drive: self.air.drive(),
         };
         let print = self.job.file.fingerprint();
         let identity = Self::identity(&print, self.job, &self.backend);
@@ -250,7 +216,7 @@ impl<'a> Simulation<'a> {
         writer.state(RUN, &state)?;
         writer.state(HISTORY, &self.history)?;
         let air = &mut self.air;
-        writer.stream(AIR, |bytes| air.write_state(bytes))?;
+        writer.stream(AIR, |bytes| air.air_mut().write_state(bytes))?;
         Ok(writer.finish()?)
     }
 
@@ -278,14 +244,14 @@ impl<'a> Simulation<'a> {
 
     fn progress(&self) -> PrecursorProgress {
         let plan = &self.job.plan;
-        let step = self.air.n_steps();
+        let step = self.air.air().n_steps();
         let made = (step - self.before.0) as f64;
         let steps_per_second = made / self.started.elapsed().as_secs_f64();
         let [hub_speed, friction_velocity] = self.history.latest().unwrap_or([f64::NAN; 2]);
         PrecursorProgress {
             step,
             n_steps: plan.n_steps,
-            time: self.air.time(),
+            time: self.air.air().time(),
             records: self.recording.is_some(),
             updates_per_second: plan.cells() as f64 * steps_per_second,
             time_left: (plan.n_steps - step) as f64 / steps_per_second,
