@@ -110,6 +110,8 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         kinematic_viscosity: 1.5e-5,
         turbulence_model: TurbulenceModel::Mann,
         planes: None,
+        precursor: None,
+        precursor_beside: false,
         beyond_planes: None,
         table: None,
         veer: 0.0,

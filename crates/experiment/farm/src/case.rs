@@ -66,6 +66,9 @@ pub struct Wind {
     /// Folder of a precursor whose planes enter at the inlet of a domain, with their temperature, and whose
     /// atmosphere the air of the domain is; relative to the case file.
     pub precursor: Option<String>,
+    /// Whether that precursor goes on beside each run, from where it stands, and its air enters in place of
+    /// its planes.
+    pub precursor_beside: bool,
     /// What blows where a domain is larger than the grid of these planes, where the case says so.
     pub beyond_planes: Option<Beyond>,
     /// File with the wind over time for a solver of deterministic wind, relative to the case file.
@@ -78,9 +81,14 @@ pub struct Wind {
 }
 
 impl Wind {
-    /// Whether it comes from recorded planes, of a file or of a precursor, rather than being made.
-    pub fn brings_planes(&self) -> bool {
+    /// Whether it comes from a file or a precursor, rather than being made.
+    pub fn is_brought(&self) -> bool {
         self.planes.is_some() || self.precursor.is_some()
+    }
+
+    /// Whether it comes from recorded planes, of a file or of a precursor.
+    pub fn brings_planes(&self) -> bool {
+        self.is_brought() && !self.precursor_beside
     }
 
     /// Where the mean wind comes from, for records and readers (deg, clockwise from north).

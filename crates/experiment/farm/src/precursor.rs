@@ -2,6 +2,7 @@
 //! studies.
 
 mod air_box;
+mod companion;
 mod driving;
 mod faults;
 mod hub_control;
@@ -9,6 +10,7 @@ mod plan;
 mod start;
 
 pub use air_box::{AirBox, Drive, hub_wind};
+pub use companion::{Accompanied, Companion};
 use flow::lattice::SubgridModel;
 pub use hub_control::HubControl;
 pub use plan::PrecursorPlan;

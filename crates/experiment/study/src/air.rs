@@ -5,6 +5,7 @@ use crate::atmosphere;
 use crate::prepared::Prepared;
 use farm::Air;
 use farm::case::Case;
+use farm::precursor::Accompanied;
 use farm::solvers::{SolverError, Start, WindSource};
 use farm::wind::Site;
 use flow::Inflow;
@@ -26,7 +27,16 @@ pub(crate) fn begin(
 ) -> Result<Air, StudyError> {
     let planes =
         if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
-    begun(Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
+    let companion = atmosphere::companion(&setup.case, setup.folder())?.map(Arc::new);
+    let inflow = match &companion {
+        Some(companion) => Arc::clone(companion) as Arc<dyn Inflow>,
+        None => Arc::clone(inflow),
+    };
+    let air = begun(Start { site: setup.site(), inflow, planes, progress })?;
+    Ok(match companion {
+        Some(companion) => Box::new(Accompanied::new(air, companion)),
+        None => air,
+    })
 }
 
 /// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes nor
@@ -38,6 +48,7 @@ pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyErro
     case.wind.turbulence_intensity = 0.0;
     case.wind.planes = None;
     case.wind.precursor = None;
+    case.wind.precursor_beside = false;
     let site = Site { case, surroundings: None, ..setup.site() };
     let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
     begun(Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })

@@ -1,11 +1,13 @@
 //! The recorded wind of a case, and the atmosphere of the precursor that it may come from.
 
 use crate::StudyError;
+use crate::precursor::{memory, standing};
 use farm::Plan;
 use farm::case::Case;
+use farm::precursor::Companion;
 use farm::wind::Surroundings;
 use flow::inflow::{ColumnLevel, InflowError, PlaneGrid, Planes};
-use formats::case::{CaseFile, objection, parse_precursor};
+use formats::case::{CaseFile, PrecursorFile, objection, parse_precursor};
 use formats::netcdf::{TemperatureReader, read_statistics};
 use formats::records::PrecursorFolder;
 use formats::{FileError, atomic, turbulence_box};
@@ -49,7 +51,11 @@ fn folder_of(case: &Case, folder: &Path) -> Option<PrecursorFolder> {
 /// [`FileError`] for a name that is none of such a file, and for a header that cannot be read.
 pub(crate) fn files(case: &Case, folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     if let Some(of) = folder_of(case, folder) {
-        return Ok(vec![of.planes_path(), of.temperature_path(), of.result_path()]);
+        let wind = match case.wind.precursor_beside {
+            true => vec![of.checkpoint_path()],
+            false => vec![of.planes_path(), of.temperature_path()],
+        };
+        return Ok([wind, vec![of.result_path()]].concat());
     }
     let Some(name) = &case.wind.planes else { return Ok(Vec::new()) };
     turbulence_box::files(&folder.join(name))
@@ -83,6 +89,21 @@ fn check_complete(folder: &PrecursorFolder) -> Result<(), FileError> {
     Err(FileError::content(WHAT, folder.path(), problem, fix))
 }
 
+/// Whether the precursor in `folder` has kept what it goes on from.
+fn check_goes_on(folder: &PrecursorFolder) -> Result<(), FileError> {
+    let path = folder.checkpoint_path();
+    if path.is_file() {
+        return Ok(());
+    }
+    let problem = "it goes on from its checkpoint, which is gone";
+    Err(FileError::content(
+        WHAT,
+        &path,
+        problem,
+        "make it again, or take wind.precursor_wind = \"planes\"",
+    ))
+}
+
 /// The atmosphere of the precursor of the case of `file`, laid out as `plan`; none where it names none.
 ///
 /// # Errors
@@ -100,14 +121,48 @@ pub(crate) fn surroundings(
     Ok(Some(found))
 }
 
+/// The precursor of `case`, whose paths are relative to `folder`, to go on beside a run; none where none is
+/// to.
+///
+/// # Errors
+/// [`StudyError`] when it cannot be read, or was made by another program or on another machine.
+pub(crate) fn companion(case: &Case, folder: &Path) -> Result<Option<Companion>, StudyError> {
+    let Some(folder) = folder_of(case, folder).filter(|_| case.wind.precursor_beside) else {
+        return Ok(None);
+    };
+    let (file, planes) = (precursor_of(&folder)?, folder.read_result()?.planes);
+    let air = standing(&folder.checkpoint_path(), &file)
+        .map_err(|error| StudyError::Solver(Box::new(error)))?;
+    // Where it blows from, clockwise from north.
+    let (s, c) = planes.direction_deg.to_radians().sin_cos();
+    Ok(Some(Companion::new(air, [-s, -c], planes.hub_speed)))
+}
+
+/// Memory (bytes) that the precursor of `case`, whose paths are relative to `folder`, takes beside each run; 0
+/// where it does not go on.
+///
+/// # Errors
+/// [`FileError`] when its file cannot be read.
+pub(crate) fn memory_beside(case: &Case, folder: &Path) -> Result<u64, FileError> {
+    let Some(folder) = folder_of(case, folder).filter(|_| case.wind.precursor_beside) else {
+        return Ok(0);
+    };
+    let precursor = precursor_of(&folder)?.precursor;
+    Ok(memory(&precursor, &precursor.plan()))
+}
+
+/// The file of the precursor in `folder`, as it was run.
+fn precursor_of(folder: &PrecursorFolder) -> Result<PrecursorFile, FileError> {
+    let path = folder.case_path();
+    let text = atomic::read_text(&path, "the precursor's file")?;
+    parse_precursor(&path, &text, &[])
+        .map_err(|error| FileError::content(WHAT, &path, error.to_string(), AGAIN))
+}
+
 /// The atmosphere that the precursor in `folder` has left.
 fn read(folder: &PrecursorFolder) -> Result<Surroundings, FileError> {
     check_complete(folder)?;
-    let path = folder.case_path();
-    let text = atomic::read_text(&path, "the precursor's file")?;
-    let precursor = parse_precursor(&path, &text, &[])
-        .map_err(|error| FileError::content(WHAT, &path, error.to_string(), AGAIN))?
-        .precursor;
+    let precursor = precursor_of(folder)?.precursor;
     let (plan, result) = (precursor.plan(), folder.read_result()?);
     let begin = plan.time(plan.first_plane);
     let driving = geostrophic(folder, begin)?;

@@ -55,7 +55,9 @@ impl Prepared {
     /// Bytes of one checkpoint of run number `index`.
     fn checkpoint_of_run(&self, index: usize) -> u64 {
         let n_turbines = self.case.runs[index].present().count() as u64;
-        (self.case.flow.solver.memory)(&self.case, &self.plan) + n_turbines * TURBINE_STATE
+        (self.case.flow.solver.memory)(&self.case, &self.plan)
+            + self.memory_beside
+            + n_turbines * TURBINE_STATE
     }
 
     /// Bytes of the checkpoint that run number `index` keeps when it is complete.
@@ -93,6 +95,7 @@ impl Prepared {
             n_steps: plan.n_steps,
             memory: field
                 + turbulence.unwrap_or(0)
+                + self.memory_beside
                 + volumes::memory(self)
                 + phase_averages::memory(self),
             disk: disks().max().unwrap_or(0),

@@ -10,6 +10,7 @@ mod result;
 mod simulation;
 
 pub use cost::PrecursorEstimate;
+pub(crate) use cost::memory;
 pub use error::PrecursorError;
 pub use observer::{PrecursorObserver, PrecursorProgress};
 
@@ -17,6 +18,7 @@ use farm::precursor::PrecursorPlan;
 use formats::case::{PrecursorFile, parse_precursor};
 use formats::records::{PrecursorFolder, PrecursorResult};
 use formats::{atomic, shipped};
+pub(crate) use simulation::standing;
 use simulation::{Ending, Simulation};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;

@@ -45,6 +45,8 @@ pub struct Prepared {
     pub recorded: Option<Recorded>,
     /// The atmosphere of the precursor that they come from, where they come from one.
     pub surroundings: Option<Surroundings>,
+    /// Memory that a precursor beside each run takes (bytes); 0 without one.
+    pub memory_beside: u64,
     /// What a reader of the numbers must know.
     pub warnings: Vec<SetupWarning>,
     /// What the files of linear laws were when they were read.
@@ -93,6 +95,7 @@ impl Prepared {
         };
         let mut warnings = warnings::of(&case, &plan);
         let surroundings = atmosphere::surroundings(file, &plan)?;
+        let memory_beside = atmosphere::memory_beside(&case, file.folder())?;
         let site =
             Site { case: &case, plan: &plan, models: &models, surroundings: surroundings.as_ref() };
         let recorded = file_of_wind::at_inlet(file, &site, planes)?;
@@ -104,7 +107,7 @@ impl Prepared {
             .chain(machines.warnings)
             .chain(operation)
             .chain(warned)
-            .chain(surroundings.iter().flat_map(|air| air.warnings(&plan)))
+            .chain(surroundings.iter().flat_map(|air| air.warnings(&case, &plan)))
             .chain(of_file);
         warnings.extend(further.map(SetupWarning::from));
         Ok(Self {
@@ -120,6 +123,7 @@ impl Prepared {
             mean_inflow,
             recorded,
             surroundings,
+            memory_beside,
             warnings,
         })
     }

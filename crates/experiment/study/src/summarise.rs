@@ -377,7 +377,7 @@ fn turbulence_length_scale(setup: &Prepared) -> Option<f64> {
     let (wind, made) = (&setup.case.wind, setup.case.wind_source());
     let is_made = wind.turbulence_intensity > 0.0
         && wind.turbulence_model == TurbulenceModel::Mann
-        && !wind.brings_planes()
+        && !wind.is_brought()
         && matches!(made, WindSource::AtInlet | WindSource::AroundRotors);
     is_made.then(|| farm::wind::length_scale(wind, setup.plan.hub_height))
 }

@@ -41,6 +41,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
             precursor: None,
+            precursor_beside: false,
             beyond_planes: None,
             table: None,
             veer: 0.0,

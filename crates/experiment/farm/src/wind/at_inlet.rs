@@ -60,7 +60,7 @@ pub fn entering(
 /// What the inlet needs of the turbulence: the box of air at the start, then a plane for every later step.
 fn size(site: &Site) -> Option<Size> {
     let (case, plan) = (site.case, site.plan);
-    let is_made = case.wind_source() == WindSource::AtInlet && !case.wind.brings_planes();
+    let is_made = case.wind_source() == WindSource::AtInlet && !case.wind.is_brought();
     if !is_made || case.wind.turbulence_intensity == 0.0 {
         return None;
     }

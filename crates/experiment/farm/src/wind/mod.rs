@@ -82,7 +82,7 @@ pub fn profile(case: &Case, plan: &Plan) -> MeanProfile {
 /// Why the profile that blows into `case` is not the one that its rough ground keeps, with the fix; none
 /// where it is, where a file brings it, and where no air meets a rough ground.
 pub fn off_balance(case: &Case) -> Option<String> {
-    if case.wind_source() != WindSource::AtInlet || case.wind.brings_planes() {
+    if case.wind_source() != WindSource::AtInlet || case.wind.is_brought() {
         return None;
     }
     let Ground::Rough { roughness_length: ground } = case.flow.domain().ground else { return None };

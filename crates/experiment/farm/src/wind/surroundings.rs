@@ -21,6 +21,8 @@ pub struct Surroundings {
     /// What of the air does not hang on the domain; the profile of temperature is that of the column.
     atmosphere: Atmosphere,
     roughness_length: f64,
+    /// Length and width of the precursor's box (m).
+    extent: [f64; 2],
     /// Height of the precursor's box (m), top of its inversion at the start (m), and where it damps waves (m)
     /// at which rate (1/s).
     height: f64,
@@ -93,6 +95,7 @@ impl Surroundings {
             },
             column,
             roughness_length: air.roughness_length,
+            extent: [precursor.domain.size[0], precursor.domain.size[1]],
             height: precursor.domain.size[2],
             inversion_top: precursor.inversion_top(),
             damping: Damping { from: precursor.damping_from(), rate: air.damping_rate },
@@ -144,15 +147,23 @@ impl Surroundings {
     }
 
     /// What a reader of the numbers must know of it in the domain of `plan`.
-    pub fn warnings(&self, plan: &Plan) -> Vec<String> {
+    pub fn warnings(&self, case: &Case, plan: &Plan) -> Vec<String> {
         let height = height_of(plan);
+        let [length, width] = [0, 1].map(|axis| plan.n_cells[axis] as f64 * plan.spacing);
+        let least = self.extent[0].min(self.extent[1]);
+        let small = (case.wind.precursor_beside && length.max(width) > least).then(|| {
+            format!(
+                "the domain is {length:.0} m by {width:.0} m, and the precursor's box {:.0} m by {:.0} m: what comes in at places as far apart as the box meets the same eddies",
+                self.extent[0], self.extent[1]
+            )
+        });
         let open = self.damping(height, plan.spacing).is_none().then(|| {
             format!(
                 "the domain ends {height:.0} m above the ground, and the inversion reaches up to {:.0} m: waves on it come back from the top undamped; raise flow.height_diameters",
                 self.inversion_top
             )
         });
-        Vec::from_iter(open)
+        open.into_iter().chain(small).collect()
     }
 }
 

@@ -354,7 +354,7 @@ pub(super) fn check_seeds(
         turbine.instruments == Instruments::default() && turbine.sensors.is_empty()
     };
     let is_still = |case: &Case| {
-        let is_made = case.wind_source() != WindSource::Planes && !case.wind.brings_planes();
+        let is_made = case.wind_source() != WindSource::Planes && !case.wind.is_brought();
         let is_turbulent = is_made && case.wind.turbulence_intensity > 0.0;
         !is_turbulent && case.turbines.iter().all(is_exact)
     };

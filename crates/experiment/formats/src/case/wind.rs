@@ -30,6 +30,9 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
         },
         planes: section.as_ref().and_then(|section| section.optional_text("planes")),
         precursor: section.as_ref().and_then(|section| section.optional_text("precursor")),
+        precursor_beside: section
+            .as_ref()
+            .is_some_and(|section| section.choice("precursor_wind") == BESIDE),
         beyond_planes: section.as_ref().and_then(beyond_of),
         table: section.as_ref().and_then(|section| section.optional_text("table")),
         veer: number("veer_deg_per_m").to_radians(),
@@ -40,6 +43,8 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
     }
 }
 
+/// Word of `precursor_wind` for a precursor that goes on beside its study.
+const BESIDE: &str = "beside";
 /// Names of what may blow beyond the planes of a file.
 const BEYOND: [(&str, Beyond); 3] =
     [("repeat", Beyond::Repeat), ("mean", Beyond::Mean), ("hold", Beyond::Hold)];
@@ -94,7 +99,7 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
     if wind.beyond_planes.is_some()
         && (!wind.brings_planes() || flow.solver.wind.of(wind) != WindSource::AtInlet)
     {
-        let why = "it is for recorded wind at the inlet of resolved flow".to_owned();
+        let why = "it is for recorded planes at the inlet of resolved flow".to_owned();
         let kind = ProblemKind::NoUse { key: section.key_path("beyond_planes"), why };
         note("beyond_planes", kind, "leave it out");
     }
@@ -109,10 +114,16 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
 
 /// Notes where the atmosphere of a precursor has no use, or leaves none to planes.
 fn check_precursor(section: &Section, wind: &Wind, flow: &Flow) {
-    if wind.precursor.is_none() {
-        return;
-    }
-    let (key, why, fix) = if !flow.solver.stands_in_atmosphere {
+    let (key, why, fix) = if wind.precursor.is_none() {
+        if !wind.precursor_beside {
+            return;
+        }
+        (
+            "precursor_wind",
+            "there is no wind.precursor".to_owned(),
+            "name its folder, or leave it out",
+        )
+    } else if !flow.solver.stands_in_atmosphere {
         let why = format!(
             "flow.solver = \"{}\" has neither temperature nor the earth's turning",
             flow.solver.name
@@ -302,6 +313,9 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     }
     if let Some(precursor) = &wind.precursor {
         writeln!(text, "precursor = {}", quoted(precursor))?;
+        if wind.precursor_beside {
+            writeln!(text, "precursor_wind = \"{BESIDE}\"")?;
+        }
     }
     if let Some(beyond) = wind.beyond_planes {
         let name = BEYOND.iter().find(|(_, one)| *one == beyond).map_or("", |(name, _)| name);

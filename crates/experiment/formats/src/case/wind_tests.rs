@@ -204,7 +204,7 @@ fn what_cannot_be_is_reported_with_its_line() {
         (
             "beyond_planes = \"mean\"",
             "lattice",
-            "windy.toml:6: `wind.beyond_planes` has no effect here: it is for recorded wind at the inlet of resolved flow",
+            "windy.toml:6: `wind.beyond_planes` has no effect here: it is for recorded planes at the inlet of resolved flow",
         ),
         (
             "planes = \"field.bts\"\nbeyond_planes = \"mean\"",

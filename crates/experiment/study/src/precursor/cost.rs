@@ -46,8 +46,7 @@ impl PrecursorEstimate {
     /// # Errors
     /// [`PrecursorError`] for air that cannot be set up, or that breaks down at once.
     pub(super) fn new(precursor: &Precursor, plan: &PrecursorPlan) -> Result<Self, PrecursorError> {
-        let of_eddies = if precursor.domain.subgrid.needs_neighbours() { EDDY_BYTES } else { 0 };
-        let memory = plan.cells() as u64 * (CELL_BYTES + of_eddies);
+        let memory = memory(precursor, plan);
         let points = (plan.grid.n_y * plan.grid.n_z) as u64;
         let recorded = points.saturating_mul(plan.grid.n_steps as u64);
         let statistics = (plan.n_statistics() * plan.n_cells[2] as u64).saturating_mul(LEVEL_BYTES);
@@ -88,6 +87,12 @@ impl PrecursorEstimate {
             }
         }
     }
+}
+
+/// Memory of the box of `precursor`, laid out as `plan` (bytes).
+pub(crate) fn memory(precursor: &Precursor, plan: &PrecursorPlan) -> u64 {
+    let of_eddies = if precursor.domain.subgrid.needs_neighbours() { EDDY_BYTES } else { 0 };
+    plan.cells() as u64 * (CELL_BYTES + of_eddies)
 }
 
 /// Cell updates a second (1/s) in a part of the box.

@@ -9,9 +9,11 @@ use super::recording::{Recording, RecordingState};
 use super::result::UNSTEADY;
 use farm::precursor::{AirBox, Drive};
 use flow::FlowError;
+use formats::case::PrecursorFile;
 use formats::checkpoint::{CheckpointReader, CheckpointWriter, Identity};
 use formats::records::PrecursorResult;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -62,7 +64,7 @@ impl<'a> Simulation<'a> {
     /// [`PrecursorError`]; what the folder holds is untouched then.
     pub(super) fn begin(job: &'a Job) -> Result<Self, PrecursorError> {
         let air = AirBox::new(&job.file.precursor, &job.plan)?;
-        let backend = format!("{}, air {}", flow::numerics(), air.air().backend());
+        let backend = backend_of(&air);
         let mut simulation = Self {
             job,
             air,
@@ -84,20 +86,11 @@ impl<'a> Simulation<'a> {
         Ok(simulation)
     }
 
-    /// What a checkpoint is known by.
-    fn identity<'b>(text: &'b str, job: &'b Job, backend: &'b str) -> Identity<'b> {
-        let run = &job.file.precursor.name;
-        Identity { case_text: text, run, version: VERSION, backend }
-    }
-
     /// On return it stands where its checkpoint was written.
     fn resume(&mut self) -> Result<(), PrecursorError> {
         let (job, path) = (self.job, self.job.folder.checkpoint_path());
-        let print = job.file.fingerprint();
-        let identity = Self::identity(&print, job, &self.backend);
-        let mut reader = CheckpointReader::open(&path, &identity)?;
-        let state: RunState = reader.state(RUN)?;
-        self.history = reader.state(HISTORY)?;
+        let (mut reader, state, history) = open(&path, &job.file, &self.backend)?;
+        self.history = history;
         if !self.history.fits(job.plan.n_cells[2]) {
             let reason = "statistics of other levels".to_owned();
             return Err(reader.unfitting(HISTORY, reason).into());
@@ -210,7 +203,7 @@ impl<'a> Simulation<'a> {
             drive: self.air.drive(),
         };
         let print = self.job.file.fingerprint();
-        let identity = Self::identity(&print, self.job, &self.backend);
+        let identity = identity(&print, &self.job.file, &self.backend);
         let path = self.job.folder.checkpoint_path();
         let mut writer = CheckpointWriter::create(&path, &identity)?;
         writer.state(RUN, &state)?;
@@ -280,6 +273,42 @@ impl<'a> Simulation<'a> {
         job.folder.write_result(&result)?;
         Ok(Ending::Complete(Box::new(result)))
     }
+}
+
+/// What of the machine decides the bits of `air`, in words.
+fn backend_of(air: &AirBox) -> String {
+    format!("{}, air {}", flow::numerics(), air.air().backend())
+}
+
+/// What a checkpoint of `file` is known by, whose fingerprint is `print`.
+fn identity<'a>(print: &'a str, file: &'a PrecursorFile, backend: &'a str) -> Identity<'a> {
+    let run = &file.precursor.name;
+    Identity { case_text: print, run, version: VERSION, backend }
+}
+
+/// The checkpoint of `file` at `path`, with what comes before its air.
+fn open(
+    path: &Path,
+    file: &PrecursorFile,
+    backend: &str,
+) -> Result<(CheckpointReader, RunState, History), PrecursorError> {
+    let print = file.fingerprint();
+    let mut reader = CheckpointReader::open(path, &identity(&print, file, backend))?;
+    let state = reader.state(RUN)?;
+    let history = reader.state(HISTORY)?;
+    Ok((reader, state, history))
+}
+
+/// The air of the precursor of `file` as its checkpoint at `path` has it.
+///
+/// # Errors
+/// [`PrecursorError`] for a checkpoint of something else.
+pub(crate) fn standing(path: &Path, file: &PrecursorFile) -> Result<AirBox, PrecursorError> {
+    let mut air = AirBox::new(&file.precursor, &file.precursor.plan())?;
+    let (mut reader, state, _) = open(path, file, &backend_of(&air))?;
+    reader.stream(AIR, |bytes| air.air_mut().read_state(bytes))?;
+    air.restore(state.drive);
+    Ok(air)
 }
 
 impl Job {
