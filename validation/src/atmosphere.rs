@@ -3,9 +3,11 @@
 
 mod capped;
 mod carried;
+mod in_study;
 mod stable;
 
 pub use capped::capped_boundary_layer;
+pub use in_study::study_in_atmosphere;
 pub use stable::{stable_boundary_layer, stable_subgrid_models};
 
 use crate::Row;

@@ -7,6 +7,7 @@ mod profile;
 mod trials;
 
 pub use in_atmosphere::helix_in_atmosphere;
+pub(crate) use in_atmosphere::wind_of_precursor;
 pub use pitch::helix_pitch;
 pub use profile::wake_profile;
 pub use trials::{wake_grid, wake_trials};

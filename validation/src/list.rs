@@ -121,6 +121,7 @@ pub const VALIDATIONS: &[Validation] = &[
         recorded: include_str!("../recorded/refined-rotor.toml"),
     },
     air::ATMOSPHERE,
+    air::IN_STUDY,
     air::STABLE,
     air::STABLE_MODELS,
     air::CAPPED,

@@ -6,6 +6,7 @@ use crate::row::Tolerance::{AtMost, Within};
 use crate::studies::{Carried, failure, find, precursor, summaries};
 use basis::records::Summary;
 use formats::records::{PrecursorResult, ProfileRow};
+use std::path::{Path, PathBuf};
 
 /// A smaller and coarser `precursor-offshore`, so that it can be waited for.
 const SMALLER: [&str; 7] = [
@@ -17,9 +18,12 @@ const SMALLER: [&str; 7] = [
     "time.record=4800",
     "planes.width=1700",
 ];
-/// What the studies share in its planes, and in Mann's wind.
-const IN_PLANES: [&str; 3] =
-    ["wind.turbulence_intensity=0.05", "wind.roughness_length=0.001", "wind.beyond_planes=mean"];
+/// What the studies share in its atmosphere, and in Mann's wind.
+const IN_ATMOSPHERE: [&str; 3] = [
+    "wind.turbulence_intensity=0.05",
+    "flow.ground={ roughness_length = 0.001 }",
+    "flow.sides=open",
+];
 const IN_BOX: [&str; 4] = [
     "wind.turbulence_intensity=0.055",
     "wind.shear_exponent=0.08",
@@ -34,15 +38,22 @@ const INTENSITY: (f64, f64) = (4.5, 1.5);
 const SOURCE: &str = "van der Hoek, Dammann, van Wingerden, section 2.1.1";
 const CASE_ITSELF: &str = "the case itself";
 
+/// The precursor of these studies, or what is there of it; gives what came of it, and its folder.
+pub(crate) fn wind_of_precursor() -> Result<(PrecursorResult, PathBuf), String> {
+    let own = SMALLER.map(str::to_owned).to_vec();
+    let (wind, planes) = precursor("precursor-offshore", "helix-in-atmosphere-wind", own)?;
+    let folder = planes.parent().map(Path::to_owned).unwrap_or_default();
+    Ok((wind, folder))
+}
+
 /// A precursor's wind, the wake in it, and the gains of an array in it and in Mann's wind.
 pub fn helix_in_atmosphere() -> Vec<Row> {
-    let own = SMALLER.map(str::to_owned).to_vec();
-    let (wind, planes) = match precursor("precursor-offshore", "helix-in-atmosphere-wind", own) {
+    let (wind, folder) = match wind_of_precursor() {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };
-    let planes = format!("wind.planes=\"{}\"", planes.display());
-    let keys = || [planes.as_str()].into_iter().chain(IN_PLANES);
+    let precursor = format!("wind.precursor=\"{}\"", folder.display());
+    let keys = || [precursor.as_str()].into_iter().chain(IN_ATMOSPHERE);
     let mut found = of_wind(&wind);
 
     let trial =

@@ -12,6 +12,16 @@ pub(super) const ATMOSPHERE: Validation = Validation {
     recorded: include_str!("../../recorded/atmosphere.toml"),
 };
 
+pub(super) const IN_STUDY: Validation = Validation {
+    name: "study-in-atmosphere",
+    about: "what becomes of a precursor's wind over 8 D in a study without turbines: speed, direction, veer, turbulence",
+    cost: Cost::Minutes(40),
+    run: atmosphere::study_in_atmosphere,
+    pictures: None,
+    page: "atmosphere",
+    recorded: include_str!("../../recorded/study-in-atmosphere.toml"),
+};
+
 pub(super) const STABLE: Validation = Validation {
     name: "stable-boundary-layer",
     about: "the stable boundary layer of GABLS1 on cells of 6.25 m beside the published spread of simulations",

@@ -91,6 +91,7 @@ fn check_complete(folder: &PrecursorFolder) -> Result<(), FileError> {
 
 /// Whether the precursor in `folder` has kept what it goes on from.
 fn check_goes_on(folder: &PrecursorFolder) -> Result<(), FileError> {
+    check_complete(folder)?;
     let path = folder.checkpoint_path();
     if path.is_file() {
         return Ok(());
@@ -114,8 +115,11 @@ pub(crate) fn surroundings(
 ) -> Result<Option<Surroundings>, StudyError> {
     let refuse = |key: &[&str], message| StudyError::Case(objection(file, key, message));
     let Some(folder) = folder_of(&file.case, file.folder()) else { return Ok(None) };
-    let found =
-        read(&folder).map_err(|error| refuse(&["wind", "precursor"], unreadable(&error)))?;
+    let read = match file.case.wind.precursor_beside {
+        true => check_goes_on(&folder).and_then(|()| read(&folder)),
+        false => read(&folder),
+    };
+    let found = read.map_err(|error| refuse(&["wind", "precursor"], unreadable(&error)))?;
     let fits = found.check(&file.case, plan);
     fits.map_err(|error| refuse(&error.key(), error.to_string()))?;
     Ok(Some(found))

@@ -1,0 +1,192 @@
+//! What becomes of a precursor's wind on its way through a study without turbines.
+
+use crate::Row;
+use crate::helix::wind_of_precursor;
+use crate::row::Tolerance::Within;
+use crate::studies::{Carried, failure, summaries};
+use flow::inflow::PlaneGrid;
+use formats::turbulence_box;
+use std::path::Path;
+
+const SOURCE: &str = "the precursor, in which the mean is alike everywhere";
+const CASE: &str = include_str!("../../cases/empty-in-atmosphere.toml");
+/// Of the IEA 22 MW turbine (m).
+const RADIUS: f64 = 142.0;
+/// Accepted change of the mean speed over the rotor (%), of direction and of veer over the rotor (deg), and
+/// of the turbulence intensity (%), over 8 D.
+const SPEED: f64 = 1.0;
+const DIRECTION: f64 = 0.5;
+const VEER: f64 = 0.5;
+const INTENSITY: f64 = 10.0;
+
+/// A way to let the wind in: its name, whether it is judged, and its keys, in which `{}` is the precursor's
+/// folder.
+struct Way {
+    name: &'static str,
+    folder: &'static str,
+    is_judged: bool,
+    keys: &'static [&'static str],
+}
+
+const GROUND: &str = "flow.ground={ roughness_length = 0.001 }";
+const WAYS: [Way; 4] = [
+    Way {
+        name: "planes, open sides",
+        folder: "study-in-atmosphere-open",
+        is_judged: true,
+        keys: &["wind.precursor=\"{}\"", GROUND, "flow.sides=open"],
+    },
+    Way {
+        name: "planes, periodic sides",
+        folder: "study-in-atmosphere-periodic",
+        is_judged: true,
+        keys: &["wind.precursor=\"{}\"", GROUND],
+    },
+    Way {
+        name: "a precursor beside it, open sides",
+        folder: "study-in-atmosphere-beside",
+        is_judged: true,
+        keys: &["wind.precursor=\"{}\"", "wind.precursor_wind=beside", GROUND, "flow.sides=open"],
+    },
+    // As studies had it before they stood in an atmosphere; told, for nothing holds its wind.
+    Way {
+        name: "planes in air without temperature, slip ground",
+        folder: "study-in-atmosphere-neutral",
+        is_judged: false,
+        keys: &[
+            "wind.planes=\"{}/planes.bts\"",
+            "wind.roughness_length=0.001",
+            "wind.beyond_planes=mean",
+        ],
+    },
+];
+
+/// Wind over the rotor at a place.
+#[derive(Clone, Copy, Debug, Default)]
+struct OverRotor {
+    /// Mean over the disc (m/s).
+    speed: f64,
+    /// Direction at hub height (deg, to the left looking downwind).
+    direction: f64,
+    /// By how much the wind turns to the right from the rotor's foot to its top (deg).
+    veer: f64,
+    /// √(2k/3) over the mean speed, over the disc (%).
+    intensity: f64,
+}
+
+/// Changes from where T1 would stand to where T2 would, 8 D apart.
+pub fn study_in_atmosphere() -> Vec<Row> {
+    let folder = match wind_of_precursor() {
+        Ok((_, folder)) => folder,
+        Err(problem) => return failure(problem),
+    };
+    WAYS.iter().flat_map(|way| of_way(way, &folder).unwrap_or_else(failure)).collect()
+}
+
+fn of_way(way: &Way, precursor: &Path) -> Result<Vec<Row>, String> {
+    let keys = way.keys.iter().map(|key| key.replace("{}", &precursor.display().to_string()));
+    let (_, folder) = summaries(Carried::Own(CASE), way.folder, keys.collect())?;
+    let run = folder.join("empty");
+    let [before, behind] =
+        ["inflow-T1.bts", "inflow-T2.bts"].map(|name| over_rotor(&run.join(name)));
+    let (before, behind) = (before?, behind?);
+    tell!(
+        "{}: speed {:.3} and {:.3} m/s, direction {:+.2} and {:+.2}°, veer {:.2} and {:.2}°, intensity {:.2} and {:.2} %",
+        way.name,
+        before.speed,
+        behind.speed,
+        before.direction,
+        behind.direction,
+        before.veer,
+        behind.veer,
+        before.intensity,
+        behind.intensity
+    );
+    if !way.is_judged {
+        return Ok(Vec::new());
+    }
+    let row = |what: &str, measured, reach, unit| Row {
+        what: format!("{}: {what} over 8 D", way.name),
+        measured,
+        expected: 0.0,
+        tolerance: Within(reach),
+        unit,
+        source: SOURCE,
+    };
+    let change = |before: f64, behind: f64| 100.0 * (behind / before - 1.0);
+    Ok(vec![
+        row(
+            "change of the mean speed over the rotor",
+            change(before.speed, behind.speed),
+            SPEED,
+            "%",
+        ),
+        row(
+            "change of direction at hub height",
+            behind.direction - before.direction,
+            DIRECTION,
+            "deg",
+        ),
+        row("change of the veer over the rotor", behind.veer - before.veer, VEER, "deg"),
+        row(
+            "change of the turbulence intensity over the rotor",
+            change(before.intensity, behind.intensity),
+            INTENSITY,
+            "%",
+        ),
+    ])
+}
+
+/// What the record at `path` tells, whose hub is the middle of its width.
+fn over_rotor(path: &Path) -> Result<OverRotor, String> {
+    let mut planes = turbulence_box::open(path).map_err(|error| error.to_string())?;
+    let grid = planes.grid();
+    let n_points = grid.n_y * grid.n_z;
+    let (mut sums, mut squares) = (vec![[0.0; 3]; n_points], vec![0.0; n_points]);
+    let mut plane = vec![[0.0; 3]; n_points];
+    for step in 0..grid.n_steps {
+        planes.read(step, &mut plane).map_err(|error| error.to_string())?;
+        for ((wind, sum), square) in plane.iter().zip(&mut sums).zip(&mut squares) {
+            for (value, sum) in wind.iter().copied().map(f64::from).zip(sum) {
+                *sum += value;
+                *square += value * value;
+            }
+        }
+    }
+    let n = grid.n_steps as f64;
+    let means: Vec<[f64; 3]> = sums.iter().map(|sum| sum.map(|sum| sum / n)).collect();
+    let hub = hub_of(&grid);
+    let (mut speed, mut energy, mut n_inside) = (0.0, 0.0, 0.0);
+    for (point, (mean, square)) in means.iter().zip(&squares).enumerate() {
+        let (y, z) = place(&grid, point);
+        if y.hypot(z - hub) <= RADIUS {
+            speed += mean[0].hypot(mean[1]);
+            energy += (square / n - mean.iter().map(|value| value * value).sum::<f64>()).max(0.0);
+            n_inside += 1.0;
+        }
+    }
+    let direction = |height: f64| {
+        let row = ((height - grid.first[1]) / grid.spacing[1]).round().max(0.0) as usize;
+        let row = &means[row.min(grid.n_z - 1) * grid.n_y..][..grid.n_y];
+        let sum = |axis: usize| row.iter().map(|mean| mean[axis]).sum::<f64>();
+        sum(1).atan2(sum(0)).to_degrees()
+    };
+    let speed = speed / n_inside;
+    Ok(OverRotor {
+        speed,
+        direction: direction(hub),
+        veer: direction(hub - RADIUS) - direction(hub + RADIUS),
+        intensity: 100.0 * (energy / n_inside / 3.0).sqrt() / speed,
+    })
+}
+
+/// Height of the hub in the middle of the width of `grid` (m): its rows reach as far above it as aside.
+fn hub_of(grid: &PlaneGrid) -> f64 {
+    grid.up()[1] - 0.5 * (grid.across()[1] - grid.across()[0])
+}
+
+/// Where point number `point` of `grid` stands along y and z (m).
+fn place(grid: &PlaneGrid, point: usize) -> (f64, f64) {
+    let (column, row) = ((point % grid.n_y) as f64, (point / grid.n_y) as f64);
+    (grid.first[0] + column * grid.spacing[0], grid.first[1] + row * grid.spacing[1])
+}
