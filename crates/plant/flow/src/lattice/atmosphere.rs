@@ -5,6 +5,7 @@
 //! which it acts as buoyancy ([`law`]). What the ground does to wind and temperature is a matter of
 //! [`similarity`], held by [`surface`].
 
+mod beside;
 pub(crate) mod coefficients;
 pub(crate) mod law;
 mod layer;

@@ -3,13 +3,12 @@
 
 mod eddies;
 mod exchange;
+mod state;
 mod worker;
 
 use super::atmosphere::probe::{self, AirRow};
 use super::atmosphere::stratification::Stratification;
-use super::atmosphere::surface::N_COLUMNS;
 use super::collision::SUBGRID_FACTOR;
-use super::ends::RowEnds;
 use super::engine::{Engine, Rows};
 use super::forces::ForceBlock;
 use super::kernel::Kernel;
@@ -19,11 +18,11 @@ use super::memory::Memory;
 use super::probe::{RowState, View};
 use super::scaling::Scaling;
 use super::settings::{LatticeError, LatticeSettings, Stencil};
+use super::sides::OpenSides;
 use super::stencil::D3Q19;
 use super::stencil27::D3Q27;
 use super::subgrid::SubgridModel;
 use super::sweep::Step;
-use super::values::{read_values, write_values};
 use super::wall::Wall;
 use crate::Inflow;
 use crate::pool::Pool;
@@ -36,7 +35,7 @@ use worker::{Worker, own};
 
 /// Viscosity at the outlet, in cells² per step.
 const SPONGE_VISCOSITY: f64 = 0.05;
-/// Pull of the outlet's pressure to the undisturbed one: 0.25 is what Poinsot and Lele (1992) found to work.
+/// Pull of the pressure at outlet and open sides to the undisturbed one: 0.25 is what Poinsot and Lele (1992) found to work.
 const OUTLET_PULL: f64 = 0.25;
 
 /// Populations in the machine's own memory, moved by its vector instructions.
@@ -58,6 +57,7 @@ pub(crate) struct Cpu {
     subgrid: Vec<f32>,
     acceleration: [f32; 3],
     outlet_stiffness: f32,
+    side_stiffness: f32,
     n_steps: u64,
 }
 
@@ -124,8 +124,8 @@ impl Cpu {
             relaxation_times: relaxation_times(settings, &scaling),
             subgrid: vec![smagorinsky_factor(settings); settings.n_cells[2]],
             acceleration,
-            outlet_stiffness: (2.0 * OUTLET_PULL / (3.0_f64.sqrt() * settings.n_cells[0] as f64))
-                as f32,
+            outlet_stiffness: stiffness(settings.n_cells[0]),
+            side_stiffness: stiffness(settings.n_cells[1]),
             n_steps: 0,
             layout,
             scaling,
@@ -203,6 +203,7 @@ impl Engine for Cpu {
             subgrid: &self.subgrid,
             acceleration: self.acceleration,
             outlet_stiffness: self.outlet_stiffness,
+            side_stiffness: self.side_stiffness,
         };
         let stratified = air.map(|air| air.air(n_steps));
         let eddies = self.eddies.as_ref();
@@ -212,6 +213,12 @@ impl Engine for Cpu {
             inlet.update(n_steps, inflow, scaling, &mut share.ends);
             if let (Some(air), Some(entering)) = (air, inlet.temperatures(n_steps)) {
                 air.enter(n_steps, share.rows.start, entering);
+            }
+            if let Some(sides) = &mut share.sides {
+                sides.update(n_steps, inflow, scaling);
+                if let Some(air) = air {
+                    air.enter_sides(n_steps, sides);
+                }
             }
             match (&stratified, &noted) {
                 (Some(air), _) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
@@ -284,70 +291,11 @@ impl Engine for Cpu {
     }
 
     fn write_state(&self, writer: &mut dyn Write) -> Result<()> {
-        let mut bytes = Vec::new();
-        for worker in &self.workers {
-            let worker = own(worker);
-            if let RowEnds::Open { outlet, .. } = &worker.share.ends {
-                for row in 0..worker.share.rows.len() {
-                    write_values(writer, &mut bytes, &outlet.each_ref().map(|column| column[row]))?;
-                }
-            }
-        }
-        for component in 0..2 {
-            for worker in &self.workers {
-                write_values(writer, &mut bytes, &own(worker).wall.filtered[component])?;
-            }
-        }
-        write_values(writer, &mut bytes, self.memory.values())?;
-        if let Some(air) = &self.stratification {
-            for column in 0..N_COLUMNS {
-                for worker in &self.workers {
-                    if let Some(heat) = &own(worker).heat {
-                        heat.surface.write(column, writer, &mut bytes)?;
-                    }
-                }
-            }
-            air.write(writer, &mut bytes)?;
-        }
-        self.eddies.as_ref().map_or(Ok(()), |eddies| eddies.write(writer, &mut bytes))
+        self.write(writer)
     }
 
     fn read_state(&mut self, n_steps: u64, reader: &mut dyn Read) -> Result<()> {
-        let mut bytes = Vec::new();
-        for worker in &self.workers {
-            let mut worker = own(worker);
-            let n_rows = worker.share.rows.len();
-            if let RowEnds::Open { outlet, .. } = &mut worker.share.ends {
-                for row in 0..n_rows {
-                    let mut values = [0.0; 4];
-                    read_values(reader, &mut bytes, &mut values)?;
-                    for (column, value) in outlet.iter_mut().zip(values) {
-                        column[row] = value;
-                    }
-                }
-            }
-        }
-        for component in 0..2 {
-            for worker in &self.workers {
-                read_values(reader, &mut bytes, &mut own(worker).wall.filtered[component])?;
-            }
-        }
-        read_values(reader, &mut bytes, self.memory.values_mut())?;
-        if let Some(air) = &mut self.stratification {
-            for column in 0..N_COLUMNS {
-                for worker in &self.workers {
-                    if let Some(heat) = &mut own(worker).heat {
-                        heat.surface.read(column, reader, &mut bytes)?;
-                    }
-                }
-            }
-            air.read_state(reader, &mut bytes)?;
-        }
-        if let Some(eddies) = &mut self.eddies {
-            eddies.read(reader, &mut bytes)?;
-        }
-        self.n_steps = n_steps;
-        Ok(())
+        self.read(n_steps, reader)
     }
 
     fn backend(&self) -> &'static str {
@@ -370,6 +318,11 @@ impl Engine for Cpu {
             None => 0,
         };
         let ends = self.layout.n_rows() * (2 * size_of::<Vector3>() + 13 * size_of::<f32>() + warm);
+        let sides = self
+            .workers
+            .iter()
+            .map(|worker| own(worker).share.sides.as_ref().map_or(0, OpenSides::bytes));
+        let ends = ends + sides.sum::<usize>();
         let heat = self.stratification.as_ref().map_or(0, Stratification::bytes);
         let noted = self.eddies.as_ref().map_or(0, Eddies::bytes);
         (self.memory.bytes() + wall + ends + heat + noted) as u64
@@ -382,6 +335,12 @@ fn smagorinsky_factor(settings: &LatticeSettings) -> f32 {
         SubgridModel::Smagorinsky => (SUBGRID_FACTOR * settings.subgrid.constant.powi(2)) as f32,
         _ => 0.0,
     }
+}
+
+/// Rate at which the pressure at a boundary is pulled to that of undisturbed air, `n_cells` cells from the
+/// boundary across (per step).
+fn stiffness(n_cells: usize) -> f32 {
+    (2.0 * OUTLET_PULL / (3.0_f64.sqrt() * n_cells as f64)) as f32
 }
 
 /// 1/2 + 3 ν along x, with the sponge before the outlet; padded to whole vectors.

@@ -9,6 +9,7 @@ impl Edge {
         match sides {
             Sides::Periodic => Self::Periodic,
             Sides::Slip => Self::Slip,
+            Sides::Open => Self::Open,
         }
     }
 

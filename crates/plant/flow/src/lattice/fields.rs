@@ -169,6 +169,17 @@ impl Fields {
         reach(y, offset, self.n_cells[1], self.sides)
     }
 
+    /// Which of the open sides, the first (0) or the last, lies between `y` and what is `offset` rows on.
+    #[inline(always)]
+    pub(super) fn side(&self, y: usize, offset: isize) -> Option<usize> {
+        let place = y as isize + offset;
+        match self.sides {
+            Edge::Open if place < 0 => Some(0),
+            Edge::Open if place >= self.n_cells[1] as isize => Some(1),
+            _ => None,
+        }
+    }
+
     /// The level that lies `offset` levels above `z`, where that is one of the box or comes back from its
     /// other side.
     #[inline(always)]

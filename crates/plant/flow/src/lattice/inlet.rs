@@ -3,13 +3,10 @@
 use super::ends::RowEnds;
 use super::layout::Layout;
 use super::scaling::Scaling;
+use super::times::{Times, weight};
 use crate::Inflow;
 use basis::Vector3;
 use std::ops::Range;
-
-/// Steps between two times at which the inflow is sampled: wind crosses half a cell in them, so nothing that
-/// the grid resolves is lost.
-const STRIDE: u64 = 4;
 
 /// One thread's part of the inlet.
 pub(crate) struct Inlet {
@@ -19,8 +16,7 @@ pub(crate) struct Inlet {
     around: [[Vec<f32>; 3]; 2],
     /// Temperature likewise, in an atmosphere.
     heat: Option<EnteringHeat>,
-    /// Interval of `STRIDE` steps that `around` belongs to.
-    interval: Option<u64>,
+    times: Times,
 }
 
 /// Temperature of the wind that enters.
@@ -59,14 +55,14 @@ impl Inlet {
             heat,
             velocities: vec![Vector3::ZERO; positions.len()],
             around: [plane(), plane()],
-            interval: None,
+            times: Times::default(),
             positions,
         }
     }
 
     /// Asks the inflow anew at the next step, whichever that is.
     pub(crate) fn forget(&mut self) {
-        self.interval = None;
+        self.times.forget();
     }
 
     /// On return the inlet of `ends` holds the wind at step number `step`.
@@ -78,18 +74,17 @@ impl Inlet {
         ends: &mut RowEnds,
     ) {
         let RowEnds::Open { inlet, .. } = ends else { return };
-        let interval = step / STRIDE;
-        if self.interval != Some(interval) {
-            if interval > 0 && self.interval == Some(interval - 1) {
-                self.around.swap(0, 1);
-                if let Some(heat) = &mut self.heat {
-                    heat.around.swap(0, 1);
-                }
-            } else {
-                self.ask(interval * STRIDE, inflow, scaling, 0);
+        let turn = self.times.turn(step);
+        if turn.swaps {
+            self.around.swap(0, 1);
+            if let Some(heat) = &mut self.heat {
+                heat.around.swap(0, 1);
             }
-            self.ask((interval + 1) * STRIDE, inflow, scaling, 1);
-            self.interval = Some(interval);
+        }
+        for (which, step) in turn.asks.into_iter().enumerate() {
+            if let Some(step) = step {
+                self.ask(step, inflow, scaling, which);
+            }
         }
         let weight = weight(step);
         let [before, after] = &self.around;
@@ -127,9 +122,4 @@ impl Inlet {
                 (velocity.x as f32, velocity.y as f32, velocity.z as f32);
         }
     }
-}
-
-/// Weight of the later of the two times around `step` (–).
-fn weight(step: u64) -> f32 {
-    (step % STRIDE) as f32 / STRIDE as f32
 }

@@ -4,7 +4,8 @@
 //! Bailey, Myre, Walsh, Lilja, Saar 2009, ICPP, 550): an even step reads and writes the cell itself, an odd
 //! step its neighbours, and each address belongs to exactly one cell in either. A row's addresses are `Q`
 //! offsets, so that periodic and slip sides are nothing but other offsets: a mirrored direction is a mirrored
-//! slot.
+//! slot. Open sides have the offsets of slip ones: what would come back mirrored is overwritten by what comes
+//! from beyond.
 //!
 //! | step | population f_q before the collision | population f_q after it |
 //! | --- | --- | --- |
@@ -33,6 +34,8 @@ pub(crate) enum Edge {
     Slip,
     /// Itself, turned back.
     Hold,
+    /// Air beyond the box, whose populations lie where itself, mirrored, would have its own.
+    Open,
 }
 
 /// Which of the two kinds of step.
@@ -199,6 +202,21 @@ impl Layout {
         self.address(parity, write_direction(parity, direction), y, z) + x
     }
 
+    /// The direction that is `direction` mirrored along y.
+    pub(crate) fn mirrored(&self, direction: usize) -> usize {
+        usize::from(self.mirrored[0][direction])
+    }
+
+    /// Whether what goes along `direction` from level `z` is turned back by what holds the air there.
+    pub(crate) fn turns_back(&self, direction: usize, z: usize) -> bool {
+        let beyond = match self.directions[direction][2] {
+            -1 if z == 0 => self.levels[0],
+            1 if z + 1 == self.n_cells[2] => self.levels[1],
+            _ => return false,
+        };
+        beyond == Edge::Hold
+    }
+
     /// Address number `slot` of the row at (`y`, `z`).
     fn address(&self, parity: Parity, slot: usize, y: usize, z: usize) -> usize {
         match parity {
@@ -214,11 +232,11 @@ fn step(place: usize, direction: i8, n: usize, edge: Edge) -> (usize, bool) {
     match direction {
         1 if place + 1 == n => match edge {
             Edge::Periodic => (0, false),
-            Edge::Slip | Edge::Hold => (place, true),
+            Edge::Slip | Edge::Hold | Edge::Open => (place, true),
         },
         -1 if place == 0 => match edge {
             Edge::Periodic => (n - 1, false),
-            Edge::Slip | Edge::Hold => (place, true),
+            Edge::Slip | Edge::Hold | Edge::Open => (place, true),
         },
         _ => (place.wrapping_add_signed(isize::from(direction)), false),
     }
@@ -275,7 +293,7 @@ mod tests {
 
     #[test]
     fn every_address_belongs_to_one_cell() {
-        use Edge::{Hold, Periodic, Slip};
+        use Edge::{Hold, Open, Periodic, Slip};
         for (sides, levels) in [
             (Periodic, [Slip; 2]),
             (Slip, [Slip; 2]),
@@ -283,6 +301,7 @@ mod tests {
             (Periodic, [Periodic; 2]),
             (Periodic, [Hold, Slip]),
             (Slip, [Hold; 2]),
+            (Open, [Hold, Slip]),
         ] {
             for n_cells in [[5, 4, 3], [4, 1, 2], [4, 2, 1], [7, 3, 4]] {
                 each_once::<D3Q19, 19>(n_cells, sides, levels);

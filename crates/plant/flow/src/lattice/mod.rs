@@ -31,6 +31,7 @@ pub mod refinement;
 mod sampling;
 mod scaling;
 mod settings;
+mod sides;
 mod solver;
 pub mod spreading;
 mod state;
@@ -41,6 +42,7 @@ mod subgrid;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod times;
 mod values;
 mod wall;
 

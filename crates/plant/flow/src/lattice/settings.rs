@@ -13,7 +13,7 @@ const FASTEST_REFERENCE: f64 = 0.15;
 const MOST_VISCOUS: f64 = 0.5;
 /// Best conducting air, in cells² per step: steps of Adams and Bashforth grow from 1/12 on.
 const MOST_CONDUCTING: f64 = 0.08;
-/// Fewest cells between inlet and outlet, or along a periodic axis.
+/// Fewest cells between inlet and outlet, between open sides, or along a periodic x.
 const FEWEST_CELLS: usize = 4;
 /// Longest zone of raised viscosity before the outlet, in cells.
 const LONGEST_SPONGE: usize = 24;
@@ -134,10 +134,14 @@ impl LatticeSettings {
             }
         }
         for (axis, (name, n_cells)) in ["x", "y", "z"].into_iter().zip(self.n_cells).enumerate() {
-            let needed = if axis == 0 { FEWEST_CELLS } else { 1 };
+            let ends = axis == 0 || (axis == 1 && self.sides == Sides::Open);
+            let needed = if ends { FEWEST_CELLS } else { 1 };
             if n_cells < needed {
                 return Err(LatticeError::TooFewCells { axis: name, n_cells, needed });
             }
+        }
+        if self.sides == Sides::Open && self.ends == Ends::Periodic {
+            return Err(LatticeError::OpenSides);
         }
         let lattice_speed = self.lattice_speed();
         if lattice_speed > FASTEST_REFERENCE {
@@ -206,6 +210,9 @@ pub enum Sides {
     Periodic,
     /// Air slips along them.
     Slip,
+    /// Wind enters and leaves as the inflow has it there: at each height it enters through the side that the
+    /// inflow's mean wind blows in by, and leaves through the other.
+    Open,
 }
 
 /// Lower and upper boundary.
@@ -267,6 +274,11 @@ pub enum LatticeError {
         /// Fewest cells (–).
         needed: usize,
     },
+    /// Open sides between periodic ends.
+    #[error(
+        "open sides need an inlet and an outlet: what comes in through a side has not passed the ends before; use those, or periodic sides"
+    )]
+    OpenSides,
     /// The wind moves too far in a step.
     #[error(
         "at {speed} m/s the wind moves {lattice_speed:.3} cells a step, the maximum is {FASTEST_REFERENCE}; use a step of at most {longest:.4} s"

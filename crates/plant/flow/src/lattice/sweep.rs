@@ -5,13 +5,18 @@
 //! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one
 //! row's end, and each row to exactly one thread.
 
+mod beyond;
+mod pushes;
+
 use super::collision::collide;
 use super::ends::{self, RowEnds};
 use super::forces::ForceBlock;
 use super::layout::{LINE, Layout, Parity, read_direction, write_direction};
+use super::sides::OpenSides;
 use super::stencil::{Moments, Stencil, Sums};
 use super::still::{Air, RowAir};
 use crate::simd::{MAXIMUM_LANES, Simd};
+use pushes::gather_forces;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{Ordering, compiler_fence};
@@ -35,6 +40,8 @@ pub(crate) struct Step<'a> {
     pub(crate) acceleration: [f32; 3],
     /// How the outlet pulls its pressure back to that of undisturbed air.
     pub(crate) outlet_stiffness: f32,
+    /// The same of open sides.
+    pub(crate) side_stiffness: f32,
 }
 
 // SAFETY: see the module; everything but `air` is read only.
@@ -46,6 +53,8 @@ pub(crate) struct Share {
     pub(crate) rows: Range<usize>,
     /// State at the rows' ends.
     pub(crate) ends: RowEnds,
+    /// What lies beyond the sides that the rows border on, where these are open.
+    pub(crate) sides: Option<OpenSides>,
     /// Force density of the wall on the rows at the ground among `rows`: x and y components, `row_stride`
     /// values a row.
     pub(crate) wall: [Vec<f32>; 2],
@@ -90,64 +99,14 @@ pub(crate) unsafe fn rows<S: Simd, L: Stencil<Q>, const Q: usize, A: Air>(
         }
         // SAFETY: handed through; these rows' cells are done.
         unsafe { ends::close::<S, L, Q>(step, &addresses[..n], start - first, &mut share.ends) };
+        if let Some(sides) = &mut share.sides {
+            for (row, addresses) in (start..).zip(&addresses[..n]) {
+                // SAFETY: handed through; the ends of these rows are closed.
+                unsafe { beyond::close::<S, L, Q>(step, addresses, step.layout.place(row), sides) };
+            }
+        }
         start += n;
     }
-}
-
-/// On return `share` holds the force density on the cells of a row in the range that is given back, and
-/// perhaps around it.
-///
-/// It is the row at (`y`, `z`), number `number` of the thread's rows; where something `pushes` every cell the
-/// range is the whole row.
-#[inline(always)]
-fn gather_forces(
-    step: &Step<'_>,
-    blocks: &[ForceBlock],
-    share: &mut Share,
-    number: usize,
-    [y, z]: [usize; 2],
-    pushes: bool,
-) -> Range<usize> {
-    let Share { wall, force, .. } = share;
-    let n = step.layout.n_cells[0];
-    let at_wall = z == 0 && !wall[0].is_empty();
-    let everywhere = pushes || at_wall || step.acceleration != [0.0; 3];
-    let mut range = if everywhere { 0..n } else { n..0 };
-    for block in blocks {
-        if block.row(y, z).is_some() {
-            range.start = range.start.min(block.origin[0]);
-            range.end = range.end.max(block.origin[0] + block.size[0]);
-        }
-    }
-    if range.is_empty() {
-        return 0..0;
-    }
-    // Whole vectors, whichever back-end runs.
-    range.start -= range.start % MAXIMUM_LANES;
-    range.end = range.end.next_multiple_of(MAXIMUM_LANES);
-    for (component, value) in force.iter_mut().zip(step.acceleration) {
-        component[range.clone()].fill(value);
-    }
-    if at_wall {
-        let start = number * step.layout.row_stride;
-        for (component, wall) in force.iter_mut().zip(&*wall) {
-            for (value, wall) in component[..n].iter_mut().zip(&wall[start..start + n]) {
-                *value += wall;
-            }
-        }
-    }
-    for block in blocks {
-        if let Some(cells) = block.row(y, z) {
-            for (component, source) in force.iter_mut().zip(&block.force) {
-                for (value, source) in
-                    component[block.origin[0]..].iter_mut().zip(&source[cells.clone()])
-                {
-                    *value += source;
-                }
-            }
-        }
-    }
-    range.start..range.end.min(n)
 }
 
 #[inline(always)]

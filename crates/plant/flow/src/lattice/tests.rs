@@ -7,6 +7,7 @@ mod eddies;
 mod engines;
 pub(super) mod ground;
 mod invariants;
+mod open_sides;
 mod stencils;
 mod warm_inlet;
 

@@ -1,5 +1,6 @@
 //! Temperature and what comes with it in the machine's memory, beside the populations of the air.
 
+use super::beside::Beside;
 use super::coefficients::{Coefficients, Level, levels};
 use super::law::{Law, Slope, Stratified};
 use super::settings::{Atmosphere, Heating, Perturbation, Reference};
@@ -8,6 +9,7 @@ use super::transport::{Ghosts, Transport, close_row, upstream};
 use crate::lattice::fields::{Field, Fields, KEPT};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
+use crate::lattice::sides::OpenSides;
 use crate::lattice::values::{read_values, write_values};
 use crate::simd::Simd;
 use std::io::{Read, Result, Write};
@@ -16,6 +18,8 @@ use std::ops::Range;
 /// The state of an atmosphere that is not in the populations of the air.
 pub(crate) struct Stratification {
     pub(super) fields: Fields,
+    /// Temperatures beyond open sides.
+    beside: Option<Beside>,
     coefficients: Coefficients,
     levels: Vec<Level>,
     plates: Option<[f32; 2]>,
@@ -85,6 +89,7 @@ impl Stratification {
         };
         Some(Self {
             fields: Fields::new(layout, sides, beyond, true, eddies)?,
+            beside: Beside::new(layout.n_cells, sides)?,
             coefficients: Coefficients::new(atmosphere, settings, &scaling),
             levels: levels(atmosphere, settings, &scaling),
             plates,
@@ -125,6 +130,7 @@ impl Stratification {
         Transport {
             fields: &self.fields,
             n_steps,
+            beside: self.beside.as_ref(),
             levels: &self.levels,
             plates: self.plates,
             periodic: self.periodic,
@@ -198,6 +204,22 @@ impl Stratification {
         }
     }
 
+    /// Gives what lies beyond the `sides` its temperatures for step number `n_steps`: those that the inflow
+    /// tells, or the level's, where it enters, and those of the cells inside where air leaves.
+    pub(crate) fn enter_sides(&self, n_steps: u64, sides: &OpenSides) {
+        let Some(beside) = &self.beside else { return };
+        for ([y, z], share, mut told) in sides.temperatures() {
+            let inside = self.fields.cells(Fields::temperature(n_steps), y, z);
+            let row = beside.row(usize::from(y > 0), z);
+            for (x, inside) in inside.iter().enumerate() {
+                let entering = told.as_mut().and_then(Iterator::next);
+                let entering = entering.unwrap_or(self.levels[z].target);
+                // SAFETY: a row that only this thread writes, and nobody reads meanwhile.
+                unsafe { *row.add(x) = inside + share * (entering - inside) };
+            }
+        }
+    }
+
     /// Temperatures of row number `row` after `n_steps` steps (K above the reference).
     pub(crate) fn temperature(&self, n_steps: u64, row: usize) -> &[f32] {
         let n_y = self.fields.n_cells[1];
@@ -267,7 +289,8 @@ impl Stratification {
             Some(_) => 7 * n_y * self.ground_stride,
             None => 0,
         };
-        self.fields.bytes() + size_of::<f32>() * (at_ground + self.sums.len())
+        let beside = self.beside.as_ref().map_or(0, Beside::bytes);
+        self.fields.bytes() + beside + size_of::<f32>() * (at_ground + self.sums.len())
     }
 }
 

@@ -9,6 +9,7 @@
 //! All threads read the temperature and the wind of all rows, and each writes the temperature to come and the
 //! change of its own rows only.
 
+use super::beside::Beside;
 use super::coefficients::Level;
 use super::stratification::HeatShare;
 use crate::lattice::fields::{Field, Fields, REACH, beyond};
@@ -21,6 +22,8 @@ pub(crate) struct Transport<'a> {
     pub(super) fields: &'a Fields,
     /// Steps made before this one (–).
     pub(super) n_steps: u64,
+    /// Temperatures beyond open sides.
+    pub(super) beside: Option<&'a Beside>,
     /// Levels, from the ground up.
     pub(super) levels: &'a [Level],
     /// Departure of the temperatures of the plates below and above from the reference (K), if there are such.
@@ -141,7 +144,10 @@ impl Row {
         let mut temperature = [[here; 2 * REACH + 1]; 3];
         for (index, offset) in (-(REACH as isize)..=REACH as isize).enumerate() {
             temperature[0][index] = here.wrapping_offset(offset);
-            temperature[1][index] = at(now, fields.beside(y, offset), z);
+            temperature[1][index] = match (step.beside, fields.side(y, offset)) {
+                (Some(beside), Some(side)) => beside.row(side, z).cast_const(),
+                _ => at(now, fields.beside(y, offset), z),
+            };
             temperature[2][index] = match fields.above(z, offset) {
                 Some(z) => at(now, y, z),
                 None if offset < 0 => ghosts.0[0][(-offset) as usize - 1 - z].as_ptr(),
@@ -160,7 +166,7 @@ impl Row {
             true => [first, last].map(|at_edge| if at_edge { 0.0 } else { 1.0 }),
             false => [1.0; 2],
         };
-        let slips = fields.sides != Edge::Periodic;
+        let slips = !matches!(fields.sides, Edge::Periodic | Edge::Open);
         let bounded = fields.levels[0] != Edge::Periodic;
         let open = [
             [1.0; 2],

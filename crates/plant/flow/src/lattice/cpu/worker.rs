@@ -8,7 +8,8 @@ use crate::lattice::kernel::Kernel;
 use crate::lattice::layout::Layout;
 use crate::lattice::probe::{RowState, View};
 use crate::lattice::scaling::Scaling;
-use crate::lattice::settings::LatticeSettings;
+use crate::lattice::settings::{LatticeSettings, Sides};
+use crate::lattice::sides::OpenSides;
 use crate::lattice::spreading::Spreader;
 use crate::lattice::sweep::Share;
 use crate::lattice::wall::WallMemory;
@@ -63,6 +64,8 @@ impl Worker {
             found: None,
             share: Share {
                 ends: RowEnds::new(settings.ends, rows.len()),
+                sides: (settings.sides == Sides::Open)
+                    .then(|| OpenSides::new(layout, &rows, reference)),
                 wall: [wall(), wall()],
                 force: std::array::from_fn(|_| vec![0.0; padded]),
                 rows,
@@ -82,6 +85,9 @@ impl Worker {
         // Nothing of an earlier run is left.
         self.row.density_excess.fill(0.0);
         self.inlet.forget();
+        if let Some(sides) = &mut self.share.sides {
+            sides.start(inflow, scaling);
+        }
         self.wall.forget();
         if let Some(heat) = &mut self.heat {
             heat.surface.forget();

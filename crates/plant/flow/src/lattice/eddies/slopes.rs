@@ -35,7 +35,7 @@ pub(super) struct Slopes([[Slope; 3]; 3]);
 /// What becomes of wind along `component` beyond an `edge` that `axis` leads through: 1 or −1.
 fn turned(edge: Edge, component: usize, axis: usize) -> f32 {
     match edge {
-        Edge::Periodic => 1.0,
+        Edge::Periodic | Edge::Open => 1.0,
         Edge::Slip if component == axis => -1.0,
         Edge::Slip => 1.0,
         Edge::Hold => -1.0,

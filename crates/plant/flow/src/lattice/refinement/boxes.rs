@@ -74,7 +74,7 @@ pub enum RefinementError {
 }
 
 /// What lies beyond the first and the last cell along each axis: none where populations are given, by an
-/// inlet, an outlet or the grid around.
+/// inlet, an outlet, an open side or the grid around.
 pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 
 /// Checks that `boxes`, and those within them, suit their places in the grid of `settings`.
@@ -121,8 +121,8 @@ pub(super) fn beyond(settings: &LatticeSettings) -> Beyond {
         Ends::Periodic => Some(Edge::Periodic),
         Ends::InletOutlet => None,
     };
-    let sides = Edge::of_sides(settings.sides);
-    [[ends; 2], [Some(sides); 2], Edge::of_ground(settings.ground).map(Some)]
+    let sides = Some(Edge::of_sides(settings.sides)).filter(|sides| *sides != Edge::Open);
+    [[ends; 2], [sides; 2], Edge::of_ground(settings.ground).map(Some)]
 }
 
 impl Refinement {
@@ -185,7 +185,7 @@ impl Refinement {
             let apart = [low[axis] >= MARGIN, high[axis] + MARGIN <= n];
             let stands: [bool; 2] = std::array::from_fn(|side| match beyond[axis][side] {
                 // What a wall turns back would go other ways in long steps than in short ones.
-                None | Some(Edge::Hold) => false,
+                None | Some(Edge::Hold | Edge::Open) => false,
                 Some(Edge::Periodic) => touches == [true; 2],
                 Some(Edge::Slip) => touches[side],
             });

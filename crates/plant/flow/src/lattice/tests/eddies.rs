@@ -187,7 +187,7 @@ fn warm_slopes(settings: &LatticeSettings, cell: [usize; 3]) -> ([f64; 3], f64) 
     let [n_x, n_y, n_z] = N_CELLS.map(|n| n as i64);
     let at = |x: i64, y: i64, z: i64| {
         let y = match settings.sides {
-            Sides::Slip => y.clamp(0, n_y - 1),
+            Sides::Slip | Sides::Open => y.clamp(0, n_y - 1),
             Sides::Periodic => y.rem_euclid(n_y),
         };
         warmth(Vector3::new(x.rem_euclid(n_x) as f64, y as f64, z as f64))
