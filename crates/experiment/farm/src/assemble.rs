@@ -140,6 +140,7 @@ pub fn lattice_settings(site: &wind::Site) -> lattice::LatticeSettings {
     settings.sides = match domain.sides {
         Sides::Periodic => lattice::Sides::Periodic,
         Sides::Slip => lattice::Sides::Slip,
+        Sides::Open => lattice::Sides::Open,
     };
     match domain.ground {
         Ground::Slip => settings.ground = lattice::Ground::Slip,

@@ -49,10 +49,10 @@ pub static KEYS: [Key; 12] = [
     ),
     key(
         "sides",
-        Holds::Choice(&["periodic", "slip"]),
+        Holds::Choice(&["periodic", "slip", "open"]),
         "",
         Value("\"periodic\""),
-        "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them.",
+        "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them. `open`: at each height wind enters, as it blows in at that place, through the side that its mean blows in by, and leaves through the other; for wind that veers.",
     ),
     key(
         "blockage",
@@ -178,7 +178,11 @@ impl Domain {
             width_diameters: all.number("width_diameters"),
             height_diameters: all.number("height_diameters"),
             ground: rough.map_or(Ground::Slip, |length| Ground::Rough { roughness_length: length }),
-            sides: if all.word("sides") == "slip" { Sides::Slip } else { Sides::Periodic },
+            sides: match all.word("sides") {
+                "slip" => Sides::Slip,
+                "open" => Sides::Open,
+                _ => Sides::Periodic,
+            },
             blockage: match all.word("blockage") {
                 "corrected" => Blockage::Corrected,
                 _ => Blockage::Felt,
@@ -253,6 +257,8 @@ pub enum Sides {
     Periodic,
     /// Air slips along them.
     Slip,
+    /// The wind that blows in enters and leaves through them.
+    Open,
 }
 
 /// What becomes of the walls' effect on the rotors.

@@ -4,8 +4,10 @@ use super::ends::RowEnds;
 use super::layout::Layout;
 use super::scaling::Scaling;
 use super::times::{Times, weight};
+use super::values::{read_values, write_values};
 use crate::Inflow;
 use basis::Vector3;
+use std::io::{Read, Result, Write};
 use std::ops::Range;
 
 /// One thread's part of the inlet.
@@ -55,14 +57,15 @@ impl Inlet {
             heat,
             velocities: vec![Vector3::ZERO; positions.len()],
             around: [plane(), plane()],
-            times: Times::default(),
+            times: Times::before_all(),
             positions,
         }
     }
 
-    /// Asks the inflow anew at the next step, whichever that is.
-    pub(crate) fn forget(&mut self) {
-        self.times.forget();
+    /// On return it holds the wind of `inflow` at time zero, and no step is made.
+    pub(crate) fn start(&mut self, inflow: &dyn Inflow, scaling: &Scaling) {
+        self.times = Times::before_all();
+        self.ask(0, inflow, scaling, 1);
     }
 
     /// On return the inlet of `ends` holds the wind at step number `step`.
@@ -74,17 +77,12 @@ impl Inlet {
         ends: &mut RowEnds,
     ) {
         let RowEnds::Open { inlet, .. } = ends else { return };
-        let turn = self.times.turn(step);
-        if turn.swaps {
+        if let Some(later) = self.times.turn(step) {
             self.around.swap(0, 1);
             if let Some(heat) = &mut self.heat {
                 heat.around.swap(0, 1);
             }
-        }
-        for (which, step) in turn.asks.into_iter().enumerate() {
-            if let Some(step) = step {
-                self.ask(step, inflow, scaling, which);
-            }
+            self.ask(later, inflow, scaling, 1);
         }
         let weight = weight(step);
         let [before, after] = &self.around;
@@ -106,11 +104,53 @@ impl Inlet {
         )
     }
 
+    /// Writes what the inflow told at the two times, row by row.
+    pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
+        (0..self.positions.len()).try_for_each(|row| {
+            for wind in &self.around {
+                write_values(writer, bytes, &wind.each_ref().map(|column| column[row]))?;
+            }
+            let Some(heat) = &self.heat else { return Ok(()) };
+            write_values(writer, bytes, &heat.around.each_ref().map(|column| column[row]))
+        })
+    }
+
+    /// Reads what [`write`](Self::write) wrote after `n_steps` steps.
+    pub(crate) fn read(
+        &mut self,
+        n_steps: u64,
+        reader: &mut dyn Read,
+        bytes: &mut Vec<u8>,
+    ) -> Result<()> {
+        self.times = Times::around_last(n_steps);
+        for row in 0..self.positions.len() {
+            for wind in &mut self.around {
+                let mut values = [0.0; 3];
+                read_values(reader, bytes, &mut values)?;
+                for (column, value) in wind.iter_mut().zip(values) {
+                    column[row] = value;
+                }
+            }
+            if let Some(heat) = &mut self.heat {
+                let mut values = [0.0; 2];
+                read_values(reader, bytes, &mut values)?;
+                for (column, value) in heat.around.iter_mut().zip(values) {
+                    column[row] = value;
+                }
+                heat.told = !values[1].is_nan();
+            }
+        }
+        Ok(())
+    }
+
     fn ask(&mut self, step: u64, inflow: &dyn Inflow, scaling: &Scaling, which: usize) {
         let time = step as f64 * scaling.interval();
         inflow.sample(time, &self.positions, &mut self.velocities);
         if let Some(heat) = &mut self.heat {
             heat.told = inflow.sample_temperature(time, &self.positions, &mut heat.temperatures);
+            if !heat.told {
+                heat.temperatures.fill(f64::NAN);
+            }
             for (departure, temperature) in heat.around[which].iter_mut().zip(&heat.temperatures) {
                 *departure = (temperature - heat.reference) as f32;
             }

@@ -110,7 +110,7 @@ impl OpenSides {
             means: [vec![[0.0; 2]; rows.len()], vec![[0.0; 2]; rows.len()]],
             heat,
             halo: [column(), column()],
-            times: Times::default(),
+            times: Times::before_all(),
             weight: 0.0,
             positions: vec![Vector3::ZERO; n_cells + 2],
             velocities: vec![Vector3::ZERO; n_cells + 2],
@@ -121,13 +121,13 @@ impl OpenSides {
 
     /// On return the air beyond the sides moves as `inflow` does at time zero.
     pub(crate) fn start(&mut self, inflow: &dyn Inflow, scaling: &Scaling) {
-        self.times.forget();
-        self.ask(0, inflow, scaling, 0);
+        self.times = Times::before_all();
+        self.ask(0, inflow, scaling, 1);
         let [excess, speed] = &mut self.halo;
         excess.fill(0.0);
         for (number, row) in self.rows.iter().enumerate() {
             let range = number * self.stride..(number + 1) * self.stride;
-            let across = &self.around[0][1][range.clone()];
+            let across = &self.around[1][1][range.clone()];
             for (speed, across) in speed[range].iter_mut().zip(across) {
                 *speed = f32::from(row.outward) * across;
             }
@@ -136,18 +136,13 @@ impl OpenSides {
 
     /// On return they hold the wind of `inflow` at step number `step`.
     pub(crate) fn update(&mut self, step: u64, inflow: &dyn Inflow, scaling: &Scaling) {
-        let turn = self.times.turn(step);
-        if turn.swaps {
+        if let Some(later) = self.times.turn(step) {
             self.around.swap(0, 1);
             self.means.swap(0, 1);
             if let Some(heat) = &mut self.heat {
                 heat.around.swap(0, 1);
             }
-        }
-        for (which, step) in turn.asks.into_iter().enumerate() {
-            if let Some(step) = step {
-                self.ask(step, inflow, scaling, which);
-            }
+            self.ask(later, inflow, scaling, 1);
         }
         self.weight = weight(step);
     }
@@ -180,11 +175,12 @@ impl OpenSides {
             self.means[which][number] = sums.map(|sum| sum / n as f32);
             let Some(heat) = &mut self.heat else { continue };
             heat.told = inflow.sample_temperature(time, &self.positions, &mut self.temperatures);
-            if heat.told {
-                let departures = heat.around[which][start..start + n].iter_mut();
-                for (departure, temperature) in departures.zip(&self.temperatures) {
-                    *departure = (temperature - heat.reference) as f32;
-                }
+            if !heat.told {
+                self.temperatures.fill(f64::NAN);
+            }
+            let departures = heat.around[which][start..start + n].iter_mut();
+            for (departure, temperature) in departures.zip(&self.temperatures) {
+                *departure = (temperature - heat.reference) as f32;
             }
         }
     }
@@ -242,24 +238,42 @@ impl OpenSides {
 
     /// Writes what time has changed, row by row.
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
+        let warm = self.heat.iter().flat_map(|heat| &heat.around);
+        let columns = || self.halo.iter().chain(self.around.iter().flatten()).chain(warm.clone());
         (0..self.rows.len()).try_for_each(|number| {
-            self.halo.iter().try_for_each(|column| {
-                self.kept(number)
-                    .into_iter()
-                    .try_for_each(|range| write_values(writer, bytes, &column[range]))
-            })
+            for column in columns() {
+                for range in self.kept(number) {
+                    write_values(writer, bytes, &column[range])?;
+                }
+            }
+            self.means.iter().try_for_each(|means| write_values(writer, bytes, &means[number]))
         })
     }
 
-    /// Reads what [`write`](Self::write) wrote.
-    pub(crate) fn read(&mut self, reader: &mut dyn Read, bytes: &mut Vec<u8>) -> Result<()> {
+    /// Reads what [`write`](Self::write) wrote after `n_steps` steps.
+    pub(crate) fn read(
+        &mut self,
+        n_steps: u64,
+        reader: &mut dyn Read,
+        bytes: &mut Vec<u8>,
+    ) -> Result<()> {
+        self.times = Times::around_last(n_steps);
         for number in 0..self.rows.len() {
             let kept = self.kept(number);
-            for column in &mut self.halo {
+            let warm = self.heat.iter_mut().flat_map(|heat| &mut heat.around);
+            let wind = self.halo.iter_mut().chain(self.around.iter_mut().flatten());
+            for column in wind.chain(warm) {
                 for range in kept.clone() {
                     read_values(reader, bytes, &mut column[range])?;
                 }
             }
+            for means in &mut self.means {
+                read_values(reader, bytes, &mut means[number])?;
+            }
+        }
+        let stride = self.stride;
+        if let (Some(heat), false) = (&mut self.heat, self.rows.is_empty()) {
+            heat.told = !heat.around[1][..stride][0].is_nan();
         }
         Ok(())
     }

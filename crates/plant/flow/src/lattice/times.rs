@@ -1,42 +1,43 @@
 //! When the inflow is asked for its wind: every few steps, for what is interpolated in between.
+//!
+//! Each time is asked for once, by all threads before the next one, and what was told is kept in checkpoints:
+//! an inflow that moves on with the air need not go back.
 
 /// Steps between two times at which the inflow is sampled: wind crosses half a cell in them, so nothing that
 /// the grid resolves is lost.
 const STRIDE: u64 = 4;
 
 /// The two times around a step.
-#[derive(Default)]
 pub(crate) struct Times {
     /// Interval of `STRIDE` steps that they bound.
-    interval: Option<u64>,
+    interval: u64,
 }
 
-/// What there is to do when a step lies between other times than the one before.
-pub(crate) struct Turn {
-    /// What belongs to the later time belongs to the earlier one from now on, and the other way round.
-    pub(crate) swaps: bool,
-    /// Steps to ask the inflow at for the earlier and for the later time.
-    pub(crate) asks: [Option<u64>; 2],
-}
+/// The interval that ends at time zero.
+const BEFORE: u64 = u64::MAX;
 
 impl Times {
-    /// Asks anew at the next step, whichever that is.
-    pub(crate) fn forget(&mut self) {
-        self.interval = None;
+    /// Those before the first step: the later of them is time zero.
+    pub(crate) fn before_all() -> Self {
+        Self { interval: BEFORE }
     }
 
-    /// Moves on to the times around step number `step`.
-    pub(crate) fn turn(&mut self, step: u64) -> Turn {
+    /// Those around the last of `n_steps` steps.
+    pub(crate) fn around_last(n_steps: u64) -> Self {
+        Self { interval: n_steps.checked_sub(1).map_or(BEFORE, |last| last / STRIDE) }
+    }
+
+    /// Moves on to the times around step number `step`, which is the next one; gives the step to ask the
+    /// inflow at for the later time, where that is another one: what belonged to the later time belongs to
+    /// the earlier one then, and the other way round.
+    pub(crate) fn turn(&mut self, step: u64) -> Option<u64> {
         let interval = step / STRIDE;
-        let before = self.interval.replace(interval);
-        let [earlier, later] = [interval * STRIDE, (interval + 1) * STRIDE];
-        match before {
-            Some(before) if before == interval => Turn { swaps: false, asks: [None; 2] },
-            Some(before) if before + 1 == interval => {
-                Turn { swaps: true, asks: [None, Some(later)] }
-            }
-            _ => Turn { swaps: false, asks: [Some(earlier), Some(later)] },
+        if interval == self.interval {
+            return None;
         }
+        debug_assert_eq!(interval, self.interval.wrapping_add(1), "steps follow one another");
+        self.interval = interval;
+        Some((interval + 1) * STRIDE)
     }
 }
 

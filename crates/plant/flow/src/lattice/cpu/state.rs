@@ -20,6 +20,12 @@ impl Cpu {
             }
         }
         for worker in &self.workers {
+            let worker = own(worker);
+            if let RowEnds::Open { .. } = worker.share.ends {
+                worker.inlet.write(writer, &mut bytes)?;
+            }
+        }
+        for worker in &self.workers {
             if let Some(sides) = &own(worker).share.sides {
                 sides.write(writer, &mut bytes)?;
             }
@@ -60,8 +66,14 @@ impl Cpu {
             }
         }
         for worker in &self.workers {
+            let mut worker = own(worker);
+            if let RowEnds::Open { .. } = worker.share.ends {
+                worker.inlet.read(n_steps, reader, &mut bytes)?;
+            }
+        }
+        for worker in &self.workers {
             if let Some(sides) = &mut own(worker).share.sides {
-                sides.read(reader, &mut bytes)?;
+                sides.read(n_steps, reader, &mut bytes)?;
             }
         }
         for component in 0..2 {

@@ -84,7 +84,9 @@ impl Worker {
     ) {
         // Nothing of an earlier run is left.
         self.row.density_excess.fill(0.0);
-        self.inlet.forget();
+        if let RowEnds::Open { .. } = self.share.ends {
+            self.inlet.start(inflow, scaling);
+        }
         if let Some(sides) = &mut self.share.sides {
             sides.start(inflow, scaling);
         }

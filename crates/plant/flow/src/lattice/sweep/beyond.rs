@@ -6,7 +6,9 @@
 //! together with what the cell inside has of the other one: eddies pass along a side much faster than through
 //! it, and a halo that kept the wave which enters as it was, as the outlet's does, would answer each of them
 //! with a pressure of the sound's impedance (Yoo, Im 2007, Combust. Theory Model. 11, 259, whose terms along
-//! the side this takes from the cell beside). Velocity along the side is that of the cell inside.
+//! the side this takes from the cell beside). Speed through the side goes on with the slope that the cell's
+//! stress tells: were it that of the cell, air that keeps its volume could not speed up along the side, and
+//! the side would hold eddies fast as a wall does. Velocity along the side is that of the cell inside.
 //!
 //! # Safety
 //! As for the sweep: what goes out of the box through a side is written to places that belong to the row's
@@ -154,9 +156,13 @@ fn leave<S: Simd>(
     let c = S::splat(0.577_350_3);
     let c_squared = S::splat(1.0 / 3.0);
     let rho = S::splat(1.0) + excess;
+    // Air keeps its volume: where it speeds up along the side, less goes through it. The slope of the speed
+    // through the side is that which the cell's stress tells, so that the halo leaves it as it is.
+    let slope = S::splat(3.0) * inside.stress[1];
+    let beyond = outward.mul_add(inside.velocity[1], slope);
     let carried = speed.maximum(S::splat(0.0)) + c;
     let pressure_rise = c_squared * (inside.density_excess - excess);
-    let speed_rise = rho * c * (outward * inside.velocity[1] - speed);
+    let speed_rise = rho * c * (beyond - speed);
     let out = carried * (pressure_rise + speed_rise);
     let into = (stiffness * c_squared).sub_from(inside.density_excess, pressure_rise - speed_rise);
     [
