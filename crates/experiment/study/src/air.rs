@@ -27,31 +27,32 @@ pub(crate) fn begin(
 ) -> Result<Air, StudyError> {
     let planes =
         if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
-    let companion = atmosphere::companion(&setup.case, setup.folder())?.map(Arc::new);
-    let inflow = match &companion {
-        Some(companion) => Arc::clone(companion) as Arc<dyn Inflow>,
-        None => Arc::clone(inflow),
-    };
-    let air = begun(Start { site: setup.site(), inflow, planes, progress })?;
-    Ok(match companion {
-        Some(companion) => Box::new(Accompanied::new(air, companion)),
-        None => air,
-    })
+    beside(setup, Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
 }
 
-/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes nor
-/// an atmosphere.
+/// The air of `start`, that of `setup`, which the wind of a precursor enters that goes on beside it, where one
+/// is to.
+fn beside(setup: &Prepared, start: Start) -> Result<Air, StudyError> {
+    let Some(companion) = atmosphere::companion(&setup.case, setup.folder())? else {
+        return begun(start);
+    };
+    let companion = Arc::new(companion);
+    let inflow = Arc::clone(&companion) as Arc<dyn Inflow>;
+    let air = begun(Start { inflow, ..start })?;
+    Ok(Box::new(Accompanied::new(air, companion)))
+}
+
+/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes, but
+/// that of a precursor beside it.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up.
 pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyError> {
     case.wind.turbulence_intensity = 0.0;
     case.wind.planes = None;
-    case.wind.precursor = None;
-    case.wind.precursor_beside = false;
-    let site = Site { case, surroundings: None, ..setup.site() };
+    let site = Site { case, ..setup.site() };
     let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
-    begun(Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
+    beside(setup, Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
 }
 
 fn begun(start: Start) -> Result<Air, StudyError> {

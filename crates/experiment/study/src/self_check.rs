@@ -15,6 +15,8 @@ use std::time::Instant;
 
 /// Cells of a domain up to which a study is timed in it (–): it takes a moment to fill.
 pub(crate) const MOST_TIMED: usize = 2_000_000;
+/// Steps that are timed at least where a precursor goes on beside them (–).
+const STEPS_BESIDE: i32 = 16;
 
 /// What the self-check of a study's rotors found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -80,7 +82,8 @@ impl Prepared {
         else {
             return Ok(found);
         };
-        if self.plan.cells() <= MOST_TIMED {
+        // No tunnel has an atmosphere.
+        if self.plan.cells() <= MOST_TIMED || self.surroundings.is_some() {
             found.updates_per_second = self.timed_in_place(run, n_jobs)?;
         } else {
             let diameter = model.definition.rotor_diameter();
@@ -129,7 +132,9 @@ impl Prepared {
         }
         let started = Instant::now();
         let mut n_steps = 0;
-        while is_sound && (n_steps % in_one != 0 || n_steps == 0 || started.elapsed() < TIMED) {
+        // A precursor beside it makes its steps now and then, too.
+        let least = if self.memory_beside > 0 { STEPS_BESIDE } else { 1 };
+        while is_sound && (n_steps % in_one != 0 || n_steps < least || started.elapsed() < TIMED) {
             is_sound = advance();
             n_steps += 1;
         }

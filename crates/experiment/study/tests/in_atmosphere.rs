@@ -4,7 +4,6 @@
 mod small;
 
 use basis::Vector3;
-use basis::records::PlaneAxes;
 use farm::assemble::lattice_settings;
 use farm::wind::Site;
 use flow::inflow::PlaneGrid;
@@ -160,14 +159,19 @@ fn left(run: &Path) -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-#[test]
-fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
-    let folder = study();
+/// Stops a study with `keys` half-way and resumes it on other threads, and compares with one at once; gives
+/// the files of wind in its manifest.
+fn stopped_and_resumed(folder: &Path, keys: &[&str]) -> Vec<String> {
     let on = |threads: usize, output: &str| StudyOptions {
-        output: Some(folder.path().join(output)),
-        overrides: vec![format!("flow.threads={threads}")],
-        ..small::options(folder.path())
+        output: Some(folder.join(output)),
+        overrides: keys
+            .iter()
+            .map(|&key| key.to_owned())
+            .chain([format!("flow.threads={threads}")])
+            .collect(),
+        ..small::options(folder)
     };
+    STOP.store(false, std::sync::atomic::Ordering::Relaxed);
     small::done(&on(1, "whole"));
     let outputs = Outputs::standard().with(&HALFWAY);
     let mut again = on(2, "stopped");
@@ -175,19 +179,70 @@ fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
     assert!(matches!(outcome, Ok(Outcome::Interrupted { .. })), "{outcome:?}");
     again.resume = true;
     small::done(&again);
-    let [whole, stopped] = ["whole", "stopped"].map(|name| folder.path().join(name));
+    let [whole, stopped] = ["whole", "stopped"].map(|name| folder.join(name));
     assert!(left(&whole.join("baseline")) == left(&stopped.join("baseline")), "other bits");
     let manifest = read_manifest(&RunFolder::new(&stopped, "baseline")).expect("a manifest");
-    let files = ["layer/planes.bts", "layer/precursor.json", "layer/temperature.nc"];
-    assert_eq!(manifest.wind_sha256.keys().collect::<Vec<_>>(), files);
-    let plane = |run: &Path| {
-        let path = run.join("baseline/planes/1D-last.nc");
-        let plane = formats::netcdf::read_plane(&path).expect("a plane");
-        assert_eq!(plane.axes, PlaneAxes::Crosswind);
-        plane.velocity[0].iter().map(|u| f64::from(*u)).sum::<f64>()
-            / plane.velocity[0].len() as f64
+    let path = whole.join("baseline/planes/1D-last.nc");
+    let plane = formats::netcdf::read_plane(&path).expect("a plane");
+    let mean = plane.velocity[0].iter().map(|u| f64::from(*u)).sum::<f64>();
+    assert!((4.0..9.0).contains(&(mean / plane.velocity[0].len() as f64)));
+    manifest.wind_sha256.into_keys().collect()
+}
+
+#[test]
+fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
+    let folder = study();
+    let files = stopped_and_resumed(folder.path(), &["flow.sides=\"open\""]);
+    assert_eq!(files, ["layer/planes.bts", "layer/precursor.json", "layer/temperature.nc"]);
+    // One after the other, for one study at a time may be stopped: beside a precursor that goes on.
+    let beside = ["wind.precursor_wind=\"beside\"", "flow.sides=\"open\""];
+    let folder = study();
+    let files = stopped_and_resumed(folder.path(), &beside);
+    assert_eq!(files, ["layer/checkpoint", "layer/precursor.json"]);
+}
+
+#[test]
+fn what_goes_on_beside_a_study_is_the_precursor_itself() {
+    let folder = study();
+    let setup = prepared(folder.path(), &["wind.precursor_wind=\"beside\"", "time.duration=200"]);
+    // No record ends, and the box is told of.
+    let setup = setup.expect("a sound case");
+    assert!(setup.recorded.is_none() && setup.memory_beside > 40 * 40 * 20 * 100);
+    let ready = setup.ready().expect("it can begin");
+    let run = ready.prepared.case.runs[0].clone();
+    let mut park = ready.farm(&run).expect("a farm");
+    let plan = &ready.prepared.plan;
+    // Just behind the inlet, beside the rotor.
+    let place = Vector3::new(plan.origin.x + 0.5 * plan.spacing, 0.0, 97.5);
+    let wind = |park: &farm::Farm<farm::Air>| {
+        let mut wind = [Vector3::ZERO];
+        flow::WindField::sample(park.flow(), &[place], &mut wind);
+        wind[0]
     };
-    assert!((4.0..9.0).contains(&plane(&whole)));
+    let n_steps = (30.0 / plan.interval).round();
+    (0..n_steps as usize).for_each(|_| park.advance(&mut farm::Unrecorded).expect("a step"));
+    // The precursor went on to the same time: its planes, recorded for longer, tell the same wind a little
+    // later, for they stand in its middle.
+    let longer = PrecursorOptions {
+        case: folder.path().join("layer.toml"),
+        output: Some(folder.path().join("layer")),
+        overrides: vec!["time.record=120".to_owned()],
+        resume: true,
+        ..PrecursorOptions::default()
+    };
+    let outcome = precursor(&longer, &AtomicBool::new(false), &mut Silent);
+    assert!(matches!(outcome, Ok(PrecursorOutcome::Done { .. })), "{outcome:?}");
+    let planes = PrecursorFolder::new(&folder.path().join("layer")).planes_path();
+    let mut planes = turbulence_box::open(&planes).expect("a file");
+    let grid = planes.grid();
+    let time = 60.0 + n_steps * plan.interval - place.x / grid.speed;
+    let mut plane = vec![[0.0; 3]; grid.n_y * grid.n_z];
+    planes.read((time / grid.interval).round() as usize, &mut plane).expect("a plane");
+    let column = (-grid.first[0] / grid.spacing[0]).round() as usize;
+    let row = ((place.z - grid.first[1]) / grid.spacing[1]).round() as usize;
+    let [u, v, _] = plane[row * grid.n_y + column].map(f64::from);
+    let found = wind(&park);
+    assert!((found.x - u).abs() < 0.3 && (found.y - v).abs() < 0.3, "{found} {u} {v}");
 }
 
 #[test]
@@ -218,6 +273,10 @@ fn what_does_not_fit_is_refused_with_key_and_fix() {
     assert!(at(&[]).contains("temperature"), "{}", at(&[]));
     fs::remove_file(layer.temperature_path()).expect("a file");
     assert!(at(&[]).contains("temperature.nc"), "{}", at(&[]));
+    let beside = ["wind.precursor_wind=\"beside\""];
+    assert!(prepared(folder.path(), &beside).is_ok());
+    fs::remove_file(layer.checkpoint_path()).expect("a file");
+    assert!(at(&beside).contains("which is gone"), "{}", at(&beside));
     fs::remove_file(layer.result_path()).expect("a file");
     assert!(at(&[]).contains("it is not complete"), "{}", at(&[]));
 }
