@@ -50,6 +50,8 @@ mod tests {
             kinematic_viscosity: 1.46e-5,
             turbulence_model: TurbulenceModel::Mann,
             planes: None,
+            precursor: None,
+            precursor_beside: false,
             beyond_planes: None,
             table: None,
             veer: 0.0,
