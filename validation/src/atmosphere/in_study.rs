@@ -29,24 +29,12 @@ struct Way {
 }
 
 const GROUND: &str = "flow.ground={ roughness_length = 0.001 }";
-const WAYS: [Way; 4] = [
-    Way {
-        name: "planes, open sides",
-        folder: "study-in-atmosphere-open",
-        is_judged: true,
-        keys: &["wind.precursor=\"{}\"", GROUND, "flow.sides=open"],
-    },
+const WAYS: [Way; 2] = [
     Way {
         name: "planes, periodic sides",
         folder: "study-in-atmosphere-periodic",
         is_judged: true,
         keys: &["wind.precursor=\"{}\"", GROUND],
-    },
-    Way {
-        name: "a precursor beside it, open sides",
-        folder: "study-in-atmosphere-beside",
-        is_judged: true,
-        keys: &["wind.precursor=\"{}\"", "wind.precursor_wind=beside", GROUND, "flow.sides=open"],
     },
     // As studies had it before they stood in an atmosphere; told, for nothing holds its wind.
     Way {

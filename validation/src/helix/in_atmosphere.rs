@@ -18,12 +18,9 @@ const SMALLER: [&str; 7] = [
     "time.record=4800",
     "planes.width=1700",
 ];
-/// What the studies share in its atmosphere, and in Mann's wind.
-const IN_ATMOSPHERE: [&str; 3] = [
-    "wind.turbulence_intensity=0.05",
-    "flow.ground={ roughness_length = 0.001 }",
-    "flow.sides=open",
-];
+/// What the studies share in its planes, and in Mann's wind.
+const IN_PLANES: [&str; 3] =
+    ["wind.turbulence_intensity=0.05", "wind.roughness_length=0.001", "wind.beyond_planes=mean"];
 const IN_BOX: [&str; 4] = [
     "wind.turbulence_intensity=0.055",
     "wind.shear_exponent=0.08",
@@ -52,8 +49,8 @@ pub fn helix_in_atmosphere() -> Vec<Row> {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };
-    let precursor = format!("wind.precursor=\"{}\"", folder.display());
-    let keys = || [precursor.as_str()].into_iter().chain(IN_ATMOSPHERE);
+    let planes = format!("wind.planes=\"{}\"", folder.join("planes.bts").display());
+    let keys = || [planes.as_str()].into_iter().chain(IN_PLANES);
     let mut found = of_wind(&wind);
 
     let trial =

@@ -15,7 +15,7 @@ pub(super) const ATMOSPHERE: Validation = Validation {
 pub(super) const IN_STUDY: Validation = Validation {
     name: "study-in-atmosphere",
     about: "what becomes of a precursor's wind over 8 D in a study without turbines: speed, direction, veer, turbulence",
-    cost: Cost::Minutes(40),
+    cost: Cost::Minutes(20),
     run: atmosphere::study_in_atmosphere,
     pictures: None,
     page: "atmosphere",

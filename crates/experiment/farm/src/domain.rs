@@ -208,10 +208,19 @@ pub fn subgrid_of(values: &Values) -> SubgridModel {
     word.and_then(SubgridModel::of_word).unwrap_or(SubgridModel::Smagorinsky)
 }
 
-/// What about the model of unresolved eddies in the `values` of `[flow]` cannot be.
-pub fn check_subgrid(values: &Values) -> Vec<Objection> {
+/// What about walls and the model of unresolved eddies in the `values` of `[flow]` cannot be.
+pub fn check(values: &Values) -> Vec<Objection> {
     let model = subgrid_of(values);
     let mut objections = Vec::new();
+    let chosen = |key, word| values.has(key) && values.word(key) == word;
+    if chosen("sides", "open") && chosen("blockage", "corrected") {
+        objections.push(Objection {
+            key: Some("blockage"),
+            message: "= \"corrected\" is for walls: through open sides the air gives way to the rotors, and by how much was not measured".to_owned(),
+            label: "not with open sides",
+            fix: "leave it out, or use flow.sides = \"periodic\"".to_owned(),
+        });
+    }
     let (foreign, own) = match model.needs_neighbours() {
         true => ("smagorinsky_constant", "subgrid_constant"),
         false => ("subgrid_constant", "smagorinsky_constant"),

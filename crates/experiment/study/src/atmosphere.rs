@@ -53,9 +53,9 @@ pub(crate) fn files(case: &Case, folder: &Path) -> Result<Vec<PathBuf>, FileErro
     if let Some(of) = folder_of(case, folder) {
         let wind = match case.wind.precursor_beside {
             true => vec![of.checkpoint_path()],
-            false => vec![of.planes_path(), of.temperature_path()],
+            false => vec![of.planes_path(), of.temperature_path(), of.statistics_path()],
         };
-        return Ok([wind, vec![of.result_path()]].concat());
+        return Ok([wind, vec![of.case_path(), of.result_path()]].concat());
     }
     let Some(name) = &case.wind.planes else { return Ok(Vec::new()) };
     turbulence_box::files(&folder.join(name))
@@ -116,8 +116,8 @@ pub(crate) fn surroundings(
     let refuse = |key: &[&str], message| StudyError::Case(objection(file, key, message));
     let Some(folder) = folder_of(&file.case, file.folder()) else { return Ok(None) };
     let read = match file.case.wind.precursor_beside {
-        true => check_goes_on(&folder).and_then(|()| read(&folder)),
-        false => read(&folder),
+        true => check_goes_on(&folder).and_then(|()| read(&folder, true)),
+        false => read(&folder, false),
     };
     let found = read.map_err(|error| refuse(&["wind", "precursor"], unreadable(&error)))?;
     let fits = found.check(&file.case, plan);
@@ -134,7 +134,8 @@ pub(crate) fn companion(case: &Case, folder: &Path) -> Result<Option<Companion>,
     let Some(folder) = folder_of(case, folder).filter(|_| case.wind.precursor_beside) else {
         return Ok(None);
     };
-    let (file, planes) = (precursor_of(&folder)?, folder.read_result()?.planes);
+    let (mut file, planes) = (precursor_of(&folder)?, folder.read_result()?.planes);
+    file.precursor.domain.threads = case.flow.threads;
     let air = standing(&folder.checkpoint_path(), &file)
         .map_err(|error| StudyError::Solver(Box::new(error)))?;
     // Where it blows from, clockwise from north.
@@ -163,13 +164,20 @@ fn precursor_of(folder: &PrecursorFolder) -> Result<PrecursorFile, FileError> {
         .map_err(|error| FileError::content(WHAT, &path, error.to_string(), AGAIN))
 }
 
-/// The atmosphere that the precursor in `folder` has left.
-fn read(folder: &PrecursorFolder) -> Result<Surroundings, FileError> {
+/// The atmosphere that the precursor in `folder` has left: as it was while its planes were recorded, or where
+/// it `goes_on`, with the ground's heat and what drives it as they are at the end.
+fn read(folder: &PrecursorFolder, goes_on: bool) -> Result<Surroundings, FileError> {
     check_complete(folder)?;
     let precursor = precursor_of(folder)?.precursor;
     let (plan, result) = (precursor.plan(), folder.read_result()?);
-    let begin = plan.time(plan.first_plane);
-    let driving = geostrophic(folder, begin)?;
+    let end = [result.geostrophic_speed, result.geostrophic_direction_deg];
+    let (begin, driving) = match goes_on {
+        true => (plan.time(plan.n_steps), end),
+        false => {
+            let begin = plan.time(plan.first_plane);
+            (begin, geostrophic(folder, begin)?.unwrap_or(end))
+        }
+    };
     let along = |wind| turned(wind, result.planes.direction_deg);
     let levels = result.profile.iter().map(|row| ColumnLevel {
         height: row.height,
@@ -192,8 +200,8 @@ fn turned([speed, direction]: [f64; 2], from: f64) -> [f64; 2] {
 }
 
 /// Mean speed of the geostrophic wind (m/s) from `begin` (s) on, when planes were recorded, and where it came
-/// from (deg).
-fn geostrophic(folder: &PrecursorFolder, begin: f64) -> Result<[f64; 2], FileError> {
+/// from (deg); none of a record shorter than the time between two statistics.
+fn geostrophic(folder: &PrecursorFolder, begin: f64) -> Result<Option<[f64; 2]>, FileError> {
     let path = folder.statistics_path();
     let statistics = read_statistics(&path, &GEOSTROPHIC, &[])?;
     let [speeds, directions] = GEOSTROPHIC.map(|name| statistics.column(name));
@@ -205,12 +213,8 @@ fn geostrophic(folder: &PrecursorFolder, begin: f64) -> Result<[f64; 2], FileErr
             n += 1;
         }
     }
-    if n == 0 {
-        let problem = format!("they tell nothing of the time from {begin} s on");
-        return Err(FileError::content("the precursor's statistics", &path, problem, AGAIN));
-    }
     let [east, north] = sum.map(|sum| sum / f64::from(n));
-    Ok([east.hypot(north), east.atan2(north).to_degrees()])
+    Ok((n > 0).then(|| [east.hypot(north), east.atan2(north).to_degrees()]))
 }
 
 /// Why wind cannot be read, with the cause.

@@ -44,7 +44,7 @@ pub static LATTICE: SolverKind = SolverKind {
     about: "lattice Boltzmann large-eddy simulation with actuator lines; turbines are in each other's wakes",
     limits: "",
     keys: &KEYS,
-    check: |values| [refinement::check(values), domain::check_subgrid(values)].concat(),
+    check: |values| [refinement::check(values), domain::check(values)].concat(),
     wind: WindSource::AtInlet,
     stands_in_atmosphere: true,
     resolves_induction: true,
@@ -136,6 +136,10 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
     } else if wind.veer != 0.0 && wind.planes.is_some() {
         let why = "the file of wind.planes brings its own veer";
         object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");
+    } else if in_atmosphere && flow.domain().sides == Sides::Slip {
+        let why = "its wind veers, and would blow through sides along which the air is to slip";
+        let fix = "use flow.sides = \"periodic\" or \"open\"";
+        object("precursor", Fault::Refused(why), fix);
     } else if wind.veer != 0.0 && flow.domain().sides == Sides::Slip {
         let why = "a wind that veers blows through sides along which the air is to slip";
         let fix = "leave it out, or use flow.sides = \"periodic\"";

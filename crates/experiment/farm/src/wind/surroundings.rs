@@ -1,7 +1,7 @@
 //! The atmosphere that a study stands in: as its precursor left it, and not neutral air at rest on the earth.
 
-use crate::case::{Case, Ground};
-use crate::plan::Plan;
+use crate::case::{Blockage, Case, Ground};
+use crate::plan::{MAXIMUM_LATTICE_SPEED, Plan};
 use crate::precursor::Precursor;
 use flow::inflow::{ColumnLevel, MeanColumn, MeanProfile};
 use flow::lattice::atmosphere::{Atmosphere, Damping, Driving, Heating};
@@ -12,6 +12,10 @@ use thiserror::Error;
 const DAMPED_ABOVE: f64 = 0.75;
 /// Least depth of the layer in which waves are damped, in cells (–).
 const LEAST_DAMPED: f64 = 4.0;
+/// Mean speed at hub height over `wind.speed`, less one, beyond which a reader must know (–), and room above
+/// the fastest free stream of a plan that it may take (–).
+const SPEED_TO_WARN: f64 = 0.05;
+const SLACK: f64 = 0.02;
 
 /// An atmosphere with its mean over height, in the frame of the planes that were taken out of it: x along the
 /// mean wind at hub height, y to the left.
@@ -41,6 +45,21 @@ pub enum SurroundingsError {
         /// Roughness length of the precursor's (m).
         roughness_length: f64,
     },
+    /// It blows faster than the lattice carries.
+    #[error(
+        "the precursor's air blows with {found:.2} m/s at hub height, {lattice:.3} cells per step, and {MAXIMUM_LATTICE_SPEED} are the most: write wind.speed = {found:.2}, which the step is made for, or lower flow.step"
+    )]
+    Fast {
+        /// Mean speed at hub height (m/s).
+        found: f64,
+        /// The same in cells per step (–).
+        lattice: f64,
+    },
+    /// A correction that is not made of what goes on beside the study.
+    #[error(
+        "= \"corrected\" scales the wind that blows in, and the air of a precursor beside the study comes in as it is: leave it out, or take wind.precursor_wind = \"planes\""
+    )]
+    Blockage,
     /// The domain is higher than what is known of the air.
     #[error(
         "the domain is {domain:.0} m high and the precursor's box {box_height:.0} m: lower flow.height_diameters to {fitting:.2}, or make a higher precursor"
@@ -60,6 +79,8 @@ impl SurroundingsError {
     pub fn key(&self) -> [&'static str; 2] {
         match self {
             Self::Ground { .. } => ["flow", "ground"],
+            Self::Fast { .. } => ["wind", "speed"],
+            Self::Blockage => ["flow", "blockage"],
             Self::High { .. } => ["flow", "height_diameters"],
         }
     }
@@ -129,6 +150,12 @@ impl Surroundings {
         has_room.then_some(Damping { from, ..self.damping })
     }
 
+    /// Mean speed at `height` (m/s).
+    pub fn speed_at(&self, height: f64) -> f64 {
+        let [along, across] = self.column.at(height).wind;
+        along.hypot(across)
+    }
+
     /// Whether the domain of `case`, laid out as `plan`, can stand in it.
     ///
     /// # Errors
@@ -137,6 +164,14 @@ impl Surroundings {
         let roughness_length = self.roughness_length;
         if case.flow.domain().ground != (Ground::Rough { roughness_length }) {
             return Err(SurroundingsError::Ground { roughness_length });
+        }
+        if case.wind.precursor_beside && case.flow.domain().blockage == Blockage::Corrected {
+            return Err(SurroundingsError::Blockage);
+        }
+        let found = self.speed_at(plan.hub_height);
+        let lattice = found * plan.base_interval() / plan.spacing;
+        if lattice > MAXIMUM_LATTICE_SPEED * (1.0 + SLACK) {
+            return Err(SurroundingsError::Fast { found, lattice });
         }
         let domain = height_of(plan);
         if domain > self.height + plan.spacing {
@@ -163,7 +198,15 @@ impl Surroundings {
                 self.inversion_top
             )
         });
-        open.into_iter().chain(small).collect()
+        let (found, speed) = (self.speed_at(plan.hub_height), case.wind.speed);
+        // Of planes their own mean is told.
+        let is_other = case.wind.precursor_beside && (found / speed - 1.0).abs() > SPEED_TO_WARN;
+        let other = is_other.then(|| {
+            format!(
+                "wind.precursor blows with {found:.2} m/s at hub height, and wind.speed = {speed} m/s: Strouhal numbers, the step and the rotors' first speeds are those of wind.speed"
+            )
+        });
+        open.into_iter().chain(small).chain(other).collect()
     }
 }
 

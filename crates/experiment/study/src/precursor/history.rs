@@ -153,13 +153,17 @@ impl History {
         })
     }
 
-    /// Means of the levels after `from` and up to `to` (s).
+    /// Means of the levels after `from` and up to `to` (s), or the latest before where nothing is known of
+    /// then.
     pub(super) fn profile(&self, from: f64, to: f64) -> Vec<ProfileRow> {
         let places = self.places(from, to);
+        let places =
+            if places.is_empty() { places.end.saturating_sub(1)..places.end } else { places };
         if places.is_empty() {
             return Vec::new();
         }
-        let stress = self.mean_stress(from, to);
+        let columns = STRESS.map(|which| self.profiles[which].as_slice());
+        let stress = mean_stress(&self.heights, columns, places.clone());
         let mean = |which: usize, level: usize| self.level_mean(which, level, &places);
         let row = |level: usize| {
             let wind = [mean(0, level), mean(1, level)];
