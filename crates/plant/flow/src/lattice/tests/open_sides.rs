@@ -162,9 +162,9 @@ fn a_vortex_leaves_through_a_side() {
         there = sum(air, &|_| aslant(15.0)) / before;
     }
     assert!(there < 1e-3, "{there} is left");
-    // 8 % of its energy while its middle passes, for the wind along the side has no slope there: a wall, and
-    // a side whose speed has no slope, have more than half of it wrong.
-    assert!(wrong < 0.1, "{wrong} is wrong at the worst");
+    // 27 % of its energy while its middle passes, for the inflow's wind is held a little, and the wind along
+    // the side has no slope there: a side whose speed has no slope, as a wall, has more than half of it wrong.
+    assert!(wrong < 0.35, "{wrong} is wrong at the worst");
 }
 
 #[test]
@@ -202,11 +202,11 @@ fn sound_leaves_through_sides() {
     air.advance(80.0, &[]).unwrap();
     let [entered, left] = [wrong(&air, 10, 40), wrong(&air, 60, 90)];
     assert!(first > 1.5e-3 && last > 1.5e-3);
-    // A third of the amplitude, a ninth of the energy.
-    assert!(left < 0.4 * last, "{left} of {last} came back");
+    // Half of the amplitude, a quarter of the energy.
+    assert!(left < 0.6 * last, "{left} of {last} came back");
     // The side where wind enters holds the wind, as an inlet does: nearly all comes back.
     assert!(entered > 0.7 * first, "{entered} of {first} came back");
-    // A third comes back from one side and nearly all from the other: a quarter in each way to and fro, of
+    // Half comes back from one side and nearly all from the other: less than half in each way to and fro, of
     // which these are five.
     air.advance(1800.0, &[]).unwrap();
     let rest = departure(&air, [0; 3], n, |_| wind);
