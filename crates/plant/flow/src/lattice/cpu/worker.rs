@@ -86,7 +86,7 @@ impl Worker {
         self.row.density_excess.fill(0.0);
         self.inlet.forget();
         if let Some(sides) = &mut self.share.sides {
-            sides.start(inflow, scaling);
+            sides.forget();
         }
         self.wall.forget();
         if let Some(heat) = &mut self.heat {
