@@ -35,7 +35,8 @@ use worker::{Worker, own};
 
 /// Viscosity at the outlet, in cells² per step.
 const SPONGE_VISCOSITY: f64 = 0.05;
-/// Pull of the pressure at outlet and open sides to the undisturbed one: 0.25 is what Poinsot and Lele (1992) found to work.
+/// Pull of the pressure at outlet and open sides to the undisturbed one: 0.25 is what Poinsot and Lele (1992)
+/// found to work.
 const OUTLET_PULL: f64 = 0.25;
 
 /// Populations in the machine's own memory, moved by its vector instructions.
