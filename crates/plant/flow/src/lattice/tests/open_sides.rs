@@ -213,8 +213,8 @@ fn sound_leaves_through_sides() {
     assert!(first > 1.5e-3 && last > 1.5e-3);
     assert!(left < 0.05 * last, "{left} of {last} came back");
     assert!(entered < 0.05 * first, "{entered} of {first} came back");
-    // Of the sound that the ends have made nothing is left either. What the pulse did to the wind at the inlet
-    // is an eddy by now, at x = 92: out of its reach.
+    // Of the sound that the ends have made nothing is left either. What the pulse did to the wind at the
+    // inlet is an eddy by now, at x = 92: out of its reach.
     air.advance(800.0, &[]).unwrap();
     let rest = departure(&air, [170, 0, 0], [190, 100, 1], |_| wind);
     println!("sound in the end {rest:e}");
