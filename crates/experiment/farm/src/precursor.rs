@@ -6,6 +6,7 @@ mod companion;
 mod driving;
 mod faults;
 mod hub_control;
+mod left_behind;
 mod plan;
 mod start;
 

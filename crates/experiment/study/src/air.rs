@@ -2,6 +2,7 @@
 
 use crate::StudyError;
 use crate::atmosphere;
+use crate::companion::companion;
 use crate::prepared::Prepared;
 use farm::Air;
 use farm::case::Case;
@@ -30,10 +31,10 @@ pub(crate) fn begin(
     beside(setup, Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
 }
 
-/// The air of `start`, that of `setup`, which the wind of a precursor enters that goes on beside it, where one
-/// is to.
+/// The air of `start`, that of `setup`, which the wind of a precursor enters that goes on beside it, where
+/// one is to.
 fn beside(setup: &Prepared, start: Start) -> Result<Air, StudyError> {
-    let Some(companion) = atmosphere::companion(&setup.case, setup.folder())? else {
+    let Some(companion) = companion(&setup.case, setup.folder())? else {
         return begun(start);
     };
     let companion = Arc::new(companion);
@@ -42,8 +43,8 @@ fn beside(setup: &Prepared, start: Start) -> Result<Air, StudyError> {
     Ok(Box::new(Accompanied::new(air, companion)))
 }
 
-/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes, but
-/// that of a precursor beside it.
+/// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes,
+/// but that of a precursor beside it.
 ///
 /// # Errors
 /// [`StudyError`] when its solver cannot be set up.

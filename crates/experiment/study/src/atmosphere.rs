@@ -1,10 +1,9 @@
 //! The recorded wind of a case, and the atmosphere of the precursor that it may come from.
 
 use crate::StudyError;
-use crate::precursor::{memory, standing};
+use crate::precursor::memory;
 use farm::Plan;
 use farm::case::Case;
-use farm::precursor::Companion;
 use farm::wind::Surroundings;
 use flow::inflow::{ColumnLevel, InflowError, PlaneGrid, Planes};
 use formats::case::{CaseFile, PrecursorFile, objection, parse_precursor};
@@ -41,7 +40,7 @@ impl Planes for WarmPlanes {
 }
 
 /// The folder of the precursor of `case`, whose paths are relative to `folder`; none where it names none.
-fn folder_of(case: &Case, folder: &Path) -> Option<PrecursorFolder> {
+pub(crate) fn folder_of(case: &Case, folder: &Path) -> Option<PrecursorFolder> {
     Some(PrecursorFolder::new(&folder.join(case.wind.precursor.as_ref()?)))
 }
 
@@ -125,26 +124,8 @@ pub(crate) fn surroundings(
     Ok(Some(found))
 }
 
-/// The precursor of `case`, whose paths are relative to `folder`, to go on beside a run; none where none is
-/// to.
-///
-/// # Errors
-/// [`StudyError`] when it cannot be read, or was made by another program or on another machine.
-pub(crate) fn companion(case: &Case, folder: &Path) -> Result<Option<Companion>, StudyError> {
-    let Some(folder) = folder_of(case, folder).filter(|_| case.wind.precursor_beside) else {
-        return Ok(None);
-    };
-    let (mut file, planes) = (precursor_of(&folder)?, folder.read_result()?.planes);
-    file.precursor.domain.threads = case.flow.threads;
-    let air = standing(&folder.checkpoint_path(), &file)
-        .map_err(|error| StudyError::Solver(Box::new(error)))?;
-    // Where it blows from, clockwise from north.
-    let (s, c) = planes.direction_deg.to_radians().sin_cos();
-    Ok(Some(Companion::new(air, [-s, -c], planes.hub_speed)))
-}
-
-/// Memory (bytes) that the precursor of `case`, whose paths are relative to `folder`, takes beside each run; 0
-/// where it does not go on.
+/// Memory (bytes) that the precursor of `case`, whose paths are relative to `folder`, takes beside each run;
+/// 0 where it does not go on.
 ///
 /// # Errors
 /// [`FileError`] when its file cannot be read.
@@ -157,7 +138,7 @@ pub(crate) fn memory_beside(case: &Case, folder: &Path) -> Result<u64, FileError
 }
 
 /// The file of the precursor in `folder`, as it was run.
-fn precursor_of(folder: &PrecursorFolder) -> Result<PrecursorFile, FileError> {
+pub(crate) fn precursor_of(folder: &PrecursorFolder) -> Result<PrecursorFile, FileError> {
     let path = folder.case_path();
     let text = atomic::read_text(&path, "the precursor's file")?;
     parse_precursor(&path, &text, &[])
@@ -184,7 +165,7 @@ fn read(folder: &PrecursorFolder, goes_on: bool) -> Result<Surroundings, FileErr
         wind: along([row.speed, row.direction_deg]),
         temperature: row.temperature,
     });
-    let found = Surroundings::new(&precursor, begin, levels.collect(), along(driving));
+    let found = precursor.surroundings(begin, levels.collect(), along(driving));
     found.ok_or_else(|| {
         let problem = "its record holds no means over height".to_owned();
         FileError::content(WHAT, &folder.result_path(), problem, AGAIN)

@@ -58,8 +58,8 @@ pub(crate) fn planes(file: &CaseFile) -> Result<Option<Box<dyn Planes>>, StudyEr
     }
 }
 
-/// Key of the file that the wind of `case` comes from, and its mean speed at hub height (m/s): that of `table`
-/// over the run, or of `planes`; none where it comes from no file.
+/// Key of the file that the wind of `case` comes from, and its mean speed at hub height (m/s): that of
+/// `table` over the run, or of `planes`; none where it comes from no file.
 pub(crate) fn recorded_speed(
     table: Option<&TabulatedWind>,
     planes: Option<&dyn Planes>,

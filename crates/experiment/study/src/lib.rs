@@ -20,6 +20,7 @@ mod atmosphere;
 mod azimuth_offset;
 mod channels;
 mod columns;
+mod companion;
 mod cost;
 mod entry;
 mod error;

@@ -32,8 +32,11 @@ fn every_case_of_the_repository_is_shipped_under_its_name() {
                 assert!(crate::library::names().any(|name| name == turbine.model));
                 assert_eq!(turbine.discon, None);
             }
+            // What comes before leaves a folder: a precursor is named itself, of a study a file in it.
+            let wind = case.wind.precursor.or(case.wind.planes);
             let before = shipped.after.map(|name| format!("runs/{name}"));
-            assert_eq!((case.wind.planes, case.wind.precursor), (None, before));
+            assert_eq!(wind.is_some(), before.is_some());
+            assert!(wind.zip(before).is_none_or(|(wind, folder)| wind.starts_with(&folder)));
         }
         let is_there = |name| find(name).is_some() || find_precursor(name).is_some();
         assert!(shipped.after.is_none_or(is_there));

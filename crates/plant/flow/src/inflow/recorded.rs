@@ -102,8 +102,8 @@ impl Entry {
         beyond.max(0.0) / grid.speed
     }
 
-    /// Memory that the wind of the planes takes (bytes); their temperature, where they have one, a third of it
-    /// on top.
+    /// Memory that the wind of the planes takes (bytes); their temperature, where they have one, a third
+    /// of it on top.
     ///
     /// # Errors
     /// As [`planes`](Self::planes).

@@ -210,17 +210,9 @@ impl Engine for Cpu {
         let eddies = self.eddies.as_ref();
         let noted = eddies.and_then(Eddies::noted);
         self.pool.run(&|thread| {
-            let Worker { share, inlet, spreader, .. } = &mut *own(&workers[thread]);
-            inlet.update(n_steps, inflow, scaling, &mut share.ends);
-            if let (Some(air), Some(entering)) = (air, inlet.temperatures(n_steps)) {
-                air.enter(n_steps, share.rows.start, entering);
-            }
-            if let Some(sides) = &mut share.sides {
-                sides.update(n_steps, inflow, scaling);
-                if let Some(air) = air {
-                    air.enter_sides(n_steps, sides);
-                }
-            }
+            let worker = &mut *own(&workers[thread]);
+            worker.meet(n_steps, inflow, scaling, air);
+            let Worker { share, spreader, .. } = worker;
             match (&stratified, &noted) {
                 (Some(air), _) => kernel.sweep_stratified(&step, air, spreader.blocks(), share),
                 (None, Some(air)) => kernel.sweep_noted(&step, air, spreader.blocks(), share),

@@ -2,8 +2,8 @@
 //!
 //! The sweep leaves the wind of every cell behind, and finds the viscosity that the pass before it left: that
 //! of the step before. Slopes are central differences; at a rough ground those between the lowest cell and
-//! the next one; beside walls the wind beyond is what the wall makes of it, mirrored or turned back; at inlet,
-//! outlet and open sides it is that of the last cell.
+//! the next one; beside walls the wind beyond is what the wall makes of it, mirrored or turned back; at
+//! inlet, outlet and open sides it is that of the last cell.
 //!
 //! # Safety
 //! All threads read the wind and the temperature of all rows, and each writes viscosity and diffusivity of

@@ -133,16 +133,7 @@ impl LatticeSettings {
                 return Err(LatticeError::NotPositive { name, value });
             }
         }
-        for (axis, (name, n_cells)) in ["x", "y", "z"].into_iter().zip(self.n_cells).enumerate() {
-            let ends = axis == 0 || (axis == 1 && self.sides == Sides::Open);
-            let needed = if ends { FEWEST_CELLS } else { 1 };
-            if n_cells < needed {
-                return Err(LatticeError::TooFewCells { axis: name, n_cells, needed });
-            }
-        }
-        if self.sides == Sides::Open && self.ends == Ends::Periodic {
-            return Err(LatticeError::OpenSides);
-        }
+        self.check_cells()?;
         let lattice_speed = self.lattice_speed();
         if lattice_speed > FASTEST_REFERENCE {
             return Err(LatticeError::TooFast {
@@ -176,6 +167,21 @@ impl LatticeSettings {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Checks the numbers of cells, and what lies beyond them.
+    fn check_cells(&self) -> Result<(), LatticeError> {
+        for (axis, (name, n_cells)) in ["x", "y", "z"].into_iter().zip(self.n_cells).enumerate() {
+            let ends = axis == 0 || (axis == 1 && self.sides == Sides::Open);
+            let needed = if ends { FEWEST_CELLS } else { 1 };
+            if n_cells < needed {
+                return Err(LatticeError::TooFewCells { axis: name, n_cells, needed });
+            }
+        }
+        if self.sides == Sides::Open && self.ends == Ends::Periodic {
+            return Err(LatticeError::OpenSides);
+        }
+        Ok(())
     }
 
     /// Checks the atmosphere, if there is one, in air of `viscosity` (cells² a step).

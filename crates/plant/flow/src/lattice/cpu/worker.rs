@@ -128,6 +128,28 @@ impl Worker {
         }
     }
 
+    /// On return its rows meet the wind and the temperature of `inflow` at step number `n_steps`, at the
+    /// inlet and at open sides; `air` is the atmosphere, if there is one.
+    pub(super) fn meet(
+        &mut self,
+        n_steps: u64,
+        inflow: &dyn Inflow,
+        scaling: &Scaling,
+        air: Option<&Stratification>,
+    ) {
+        let Self { share, inlet, .. } = self;
+        inlet.update(n_steps, inflow, scaling, &mut share.ends);
+        if let (Some(air), Some(entering)) = (air, inlet.temperatures(n_steps)) {
+            air.enter(n_steps, share.rows.start, entering);
+        }
+        if let Some(sides) = &mut share.sides {
+            sides.update(n_steps, inflow, scaling);
+            if let Some(air) = air {
+                air.enter_sides(n_steps, sides);
+            }
+        }
+    }
+
     pub(super) fn look(&mut self, kernel: &Kernel, view: &View<'_>, first: usize, stride: usize) {
         self.found = None;
         for row in self.share.rows.clone().filter(|row| row % stride == first) {

@@ -163,7 +163,8 @@ fn a_vortex_leaves_through_a_side() {
     }
     assert!(there < 1e-3, "{there} is left");
     // 27 % of its energy while its middle passes, for the inflow's wind is held a little, and the wind along
-    // the side has no slope there: a side whose speed has no slope, as a wall, has more than half of it wrong.
+    // the side has no slope there: a side whose speed has no slope, as a wall, has more than half
+    // of it wrong.
     assert!(wrong < 0.35, "{wrong} is wrong at the worst");
 }
 
@@ -297,8 +298,8 @@ fn a_warm_blob_leaves_through_a_side_and_none_comes_back() {
         air.advance(300.0, &[]).unwrap();
         left.push(most(&air));
     }
-    // Its middle passes the side after 770 steps, at x = 105, and is 12 cells beyond the last cell in the end,
-    // where a tenth of it is left.
+    // Its middle passes the side after 770 steps, at x = 105, and is 12 cells beyond the last cell in the
+    // end, where a tenth of it is left.
     let beyond = 20.0 + 1200.0 * aslant(15.0).y - 39.0;
     assert!(left[0] > 0.95, "{left:?}");
     assert!(
