@@ -246,7 +246,9 @@ mod tests {
         assert_eq!(profile.len(), 3);
         assert!((profile[1].temperature - 288.0 - 95.0).abs() < 1e-9);
         assert!((profile[1].direction_deg - 225.0).abs() < 1e-9);
-        assert!(history().profile(1000.0, 2000.0).is_empty());
+        // Where nothing is known of a time, the latest before it is told.
+        assert_eq!(history().profile(1000.0, 2000.0), history().profile(110.0, 120.0));
+        assert!(History::default().profile(0.0, 10.0).is_empty());
         assert!(history().fits(3) && !history().fits(4) && History::default().fits(4));
     }
 }
