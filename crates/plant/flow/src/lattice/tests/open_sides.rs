@@ -207,12 +207,13 @@ fn sound_leaves_through_sides() {
     assert!(left < 0.6 * last, "{left} of {last} came back");
     // The side where wind enters holds the wind, as an inlet does: nearly all comes back.
     assert!(entered > 0.7 * first, "{entered} of {first} came back");
-    // Half comes back from one side and nearly all from the other: less than half in each way to and fro, of
-    // which these are five.
-    air.advance(1800.0, &[]).unwrap();
-    // Behind the eddy that the pulse has left where it met the inlet.
+    // Half comes back from one side and nearly all from the other: 0.43 in each way to and fro, of which 930
+    // steps are 2.7, so that a tenth is left of each half, and a fifth
+    // where they meet.
+    air.advance(800.0, &[]).unwrap();
+    // Ahead of the eddy that the pulse has left where it met the inlet, which the wind has carried to 92.
     let rest = departure(&air, [170, 0, 0], [190, n[1], 1], |_| wind);
-    assert!(rest < 0.02 * last);
+    assert!(rest < 0.25 * last, "{rest} of {last} is left");
 }
 
 /// Wind aslant whose temperature is given by time and position, about 300 K.
