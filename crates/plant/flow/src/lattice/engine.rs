@@ -27,7 +27,7 @@ pub trait Engine: Send + Sync {
         false
     }
 
-    /// Makes a step, with the wind of `inflow` at the inlet.
+    /// Makes a step, with the wind of `inflow` at the inlet and beyond open sides.
     fn step(&mut self, inflow: &dyn Inflow);
 
     /// Steps made (–).
