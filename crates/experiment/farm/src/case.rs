@@ -91,6 +91,14 @@ impl Wind {
         self.is_brought() && !self.precursor_beside
     }
 
+    /// Whether it changes in time: it is turbulent, something happens in it, or a file says what.
+    pub fn varies(&self) -> bool {
+        self.turbulence_intensity > 0.0
+            || self.event.is_some()
+            || self.table.is_some()
+            || self.is_brought()
+    }
+
     /// Where the mean wind comes from, for records and readers (deg, clockwise from north).
     pub fn direction_deg(&self) -> f64 {
         // Without what the change of units leaves at its end.

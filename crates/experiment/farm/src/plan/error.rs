@@ -94,19 +94,23 @@ pub enum PlanError {
     },
     /// A rotor turns so far in a step that the wake behind it is no helix.
     #[error(
-        "flow.step = {step} s is too long: {name} turns by {turn_deg:.0}° in it, the maximum is {most_deg:.0}°; use at most {longest:.3} s, or leave the key out"
+        "{what}: {name} turns by {turn_deg:.0}° in a step {when}, the maximum is {most_deg:.0}°; {fix}"
     )]
     TurnsTooFar {
         /// Turbine.
         name: String,
-        /// Step given (s).
-        step: f64,
+        /// Key that decides.
+        key: &'static str,
+        /// What of it is wrong, in words.
+        what: String,
         /// Angle (deg).
         turn_deg: f64,
+        /// When it turns so far, in words.
+        when: &'static str,
         /// Greatest angle (deg).
         most_deg: f64,
-        /// Longest step (s).
-        longest: f64,
+        /// What to change.
+        fix: String,
     },
     /// A turbine stands still in this wind.
     #[error(
@@ -246,12 +250,10 @@ impl PlanError {
             Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
             Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
             Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
-            Self::TipOutruns { .. }
-            | Self::TooFast { .. }
-            | Self::TooSlow { .. }
-            | Self::TurnsTooFar { .. } => {
+            Self::TipOutruns { .. } | Self::TooFast { .. } | Self::TooSlow { .. } => {
                 vec!["flow", "step"]
             }
+            Self::TurnsTooFar { key, .. } => vec!["flow", *key],
             Self::NotInOperation { key, .. } => vec!["wind", *key],
             Self::TooRough { .. } => vec!["wind", "roughness_length"],
             Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],

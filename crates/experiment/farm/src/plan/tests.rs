@@ -84,7 +84,8 @@ fn settings_of(case: &Case, plan: &Plan) -> LatticeSettings {
 }
 
 fn footprints() -> BTreeMap<String, Footprint> {
-    let footprint = Footprint { diameter: 240.0, hub_height: 150.0, tip_speed: 81.0 };
+    let footprint =
+        Footprint { diameter: 240.0, hub_height: 150.0, tip_speed: 81.0, rated_tip_speed: 95.0 };
     BTreeMap::from([("model".to_owned(), footprint)])
 }
 
@@ -246,7 +247,8 @@ fn rotors_that_turn_fast_take_shorter_steps_in_prescribed_wind() {
     let mut case = case(&[[0.0, 0.0]]);
     case.flow.solver = Solver::UNIFORM;
     // A model of 0.58 m at tip-speed ratio 5 in 5 m/s: 86 rad/s.
-    let footprint = Footprint { diameter: 0.58, hub_height: 1.425, tip_speed: 25.0 };
+    let footprint =
+        Footprint { diameter: 0.58, hub_height: 1.425, tip_speed: 25.0, rated_tip_speed: 25.0 };
     let small = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
     assert!((small.interval * 25.0 / 0.29 - FARTHEST_PRESCRIBED_TURN).abs() < 1e-12);
     assert!((small.row_interval() / small.interval - 5.0).abs() < 1e-9);

@@ -65,6 +65,7 @@ pub static LATTICE: SolverKind = SolverKind {
     reach: |_, _| 0.0,
     memory,
     less_memory: "flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters",
+    steadier: "a shorter flow.step or more cells (flow.cells_per_diameter) may carry it",
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,
@@ -98,7 +99,7 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
 }
 
 /// The speed-up between the walls of `tunnel`, as [`SolverKind::equivalent_speed`] has it.
-fn in_a_channel(tunnel: &Tunnel, diameter: f64, thrust_coefficient: f64) -> f64 {
+fn in_a_channel(tunnel: &Tunnel, _: &Flow, diameter: f64, thrust_coefficient: f64) -> f64 {
     let width = tunnel.n_cells(diameter)[1] as f64 * tunnel.spacing;
     let area_ratio = FRAC_PI_4 * (diameter / width).powi(2);
     equivalent_speed_ratio(thrust_coefficient, area_ratio)

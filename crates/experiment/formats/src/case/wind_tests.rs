@@ -34,7 +34,8 @@ fn wind_of_case(text: &str) -> DeterministicWind {
     let case = parse("windy.toml", text, &[]);
     let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{text}");
-    let footprint = Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0 };
+    let footprint =
+        Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0, rated_tip_speed: 80.0 };
     let plan = plan(&case, &BTreeMap::from([("m".to_owned(), footprint)])).unwrap();
     let wind = deterministic(&case, &plan);
     wind.check().unwrap();
