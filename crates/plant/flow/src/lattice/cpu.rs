@@ -156,7 +156,7 @@ impl Cpu {
                     air.gather(share.rows.start, &heat.sums);
                 }
             }
-            air.follow();
+            air.follow(0..self.layout.n_cells[2]);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Temperature on its way from grid to grid, for whoever exchanges it between two steps.
 
 use super::links::Fill;
+use std::ops::Range;
 
 /// A quantity of every cell, in lattice units but for kelvin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +65,8 @@ pub trait HeatExchange {
     /// On return the temperature of the cells from `low` to before `high` is what `fill` gives.
     fn cover(&mut self, low: [usize; 3], high: [usize; 3], fill: &RowFill<'_>);
 
-    /// Takes note that temperatures in rows from `low` to before `high` were changed since the last step.
-    fn settle(&mut self, low: [usize; 3], high: [usize; 3]);
+    /// Takes note that temperatures on `levels` were changed since the last step.
+    fn settle(&mut self, levels: Range<usize>);
 
     /// On return `means` holds the temperature of each level that buoyancy starts from, and `bases` that which
     /// fluxes count from (K above the reference).

@@ -250,15 +250,16 @@ impl Stratification {
         self.temperature(n_steps, row).iter().sum()
     }
 
-    /// Levels follow their means, once all sums are in, where buoyancy refers to them. Those of a box in the
-    /// air of another grid follow that one's.
-    pub(crate) fn follow(&mut self) {
+    /// The levels whose numbers are in `levels` follow their means, once all sums are in, where buoyancy refers
+    /// to them. Those of a box in the air of another grid follow that one's.
+    pub(crate) fn follow(&mut self, levels: Range<usize>) {
         if self.reference == Reference::Start || self.fields.joined != Faces::default() {
             return;
         }
         let [n_x, n_y, _] = self.fields.n_cells;
         let share = 1.0 / (n_x * n_y) as f64;
-        for (level, sums) in self.levels.iter_mut().zip(self.sums.chunks(n_y)) {
+        let sums = self.sums.chunks(n_y).skip(levels.start);
+        for (level, sums) in self.levels[levels].iter_mut().zip(sums) {
             let sum: f64 = sums.iter().copied().map(f64::from).sum();
             level.refer((sum * share) as f32);
         }

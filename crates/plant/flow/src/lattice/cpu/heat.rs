@@ -7,6 +7,7 @@ use crate::lattice::atmosphere::transport::face_fluxes;
 use crate::lattice::fields::{Field, Fields};
 use crate::lattice::heat_links::{Face, Heat, HeatExchange, RowFill};
 use crate::lattice::links::Fill;
+use std::ops::Range;
 
 /// The air with temperature. An engine without it calls itself no exchange of heat.
 fn warm(air: &Option<Stratification>) -> &Stratification {
@@ -64,23 +65,19 @@ impl HeatExchange for Cpu {
         });
     }
 
-    fn settle(&mut self, low: [usize; 3], high: [usize; 3]) {
-        let n_y = self.layout.n_cells[1];
-        let n_threads = self.pool.n_threads();
+    fn settle(&mut self, levels: Range<usize>) {
         let Some(air) = &mut self.stratification else { return };
+        let n_y = self.layout.n_cells[1];
+        let rows = levels.start * n_y..levels.end * n_y;
         let mut sums = std::mem::take(&mut air.sums);
-        let place = &Values(sums.as_mut_ptr());
         let (settled, n_steps) = (&*air, self.n_steps);
-        self.pool.run(&|thread| {
-            for number in share((high[1] - low[1]) * (high[2] - low[2]), thread, n_threads) {
-                let [y, z] = [number % (high[1] - low[1]), number / (high[1] - low[1])];
-                let row = (low[2] + z) * n_y + low[1] + y;
-                // SAFETY: the sum of a row that only this thread touches now.
-                unsafe { place.part(row..row + 1)[0] = settled.settle(n_steps, row) };
+        fill_up(&mut self.pool, &mut sums[rows.clone()], &|first, sums| {
+            for (row, sum) in (rows.start + first..).zip(sums) {
+                *sum = settled.settle(n_steps, row);
             }
         });
         air.sums = sums;
-        air.follow();
+        air.follow(levels);
     }
 
     fn levels(&self, means: &mut [f32], bases: &mut [f32]) {

@@ -18,6 +18,9 @@ pub const WARM_MARGIN: usize = REACH;
 /// Memory of the exchange for each population that leaves a box through a face of a cell (bytes), about: as
 /// measured of a box of 64 × 32 × 32 cells on the ground.
 const BYTES_OF_LINK: u64 = 125;
+/// Memory of the exchange of temperature for each face of a cell of a box's sides (bytes), about, with what is
+/// given beyond it, as measured likewise.
+const BYTES_OF_WARM_FACE: u64 = 190;
 
 /// A box of cells of half the size, moved by steps of half the length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -168,16 +171,19 @@ impl Refinement {
         1 + self.within.iter().map(Self::depth).max().unwrap_or(0)
     }
 
-    /// Memory (bytes) of its exchange with the grid around it in populations of `stencil`, about: what it is
-    /// where they cross all six sides.
-    pub fn exchange_memory(&self, stencil: Stencil) -> u64 {
+    /// Memory (bytes) of its exchange, and of that of the boxes within it, with the grid around it in
+    /// populations of `stencil`, in air with temperature (`is_warm`) or without, about: what it is where they
+    /// cross all six sides.
+    pub fn exchange_memory(&self, stencil: Stencil, is_warm: bool) -> u64 {
         let [x, y, z] = self.fine_cells().map(|n| n as u64);
         // Directions that lead through a face.
         let n_links = match stencil {
             Stencil::D3Q19 => 5,
             Stencil::D3Q27 => 9,
         };
-        2 * (x * y + y * z + z * x) * n_links * BYTES_OF_LINK
+        let heat = if is_warm { BYTES_OF_WARM_FACE } else { 0 };
+        let within = self.within.iter().map(|one| one.exchange_memory(stencil, is_warm));
+        2 * (x * y + y * z + z * x) * (n_links * BYTES_OF_LINK + heat) + within.sum::<u64>()
     }
 
     /// The cells around it that it covers.

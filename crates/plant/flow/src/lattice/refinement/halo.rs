@@ -94,9 +94,9 @@ impl Place {
         for (children, level) in children.chunks_exact_mut(2).zip(levels) {
             let at = |after| self.neighbour([0, 0, level], 2, after).map(|[_, _, z]| values[z]);
             let here = values[level];
-            let [before, after] = [at(false), at(true)];
-            let both = before.is_some() && after.is_some();
-            let slope = slope([before.unwrap_or(here), here, after.unwrap_or(here)], both);
+            let [below, above] = [at(false), at(true)];
+            let both = below.is_some() && above.is_some();
+            let slope = slope_upwards([below.unwrap_or(here), here, above.unwrap_or(here)], both);
             children[0] = values[level] - ASIDE * slope;
             children[1] = values[level] + ASIDE * slope;
         }
@@ -110,16 +110,16 @@ impl Place {
     }
 }
 
-/// Slope of a value between that `before` and that `after` it, of which `both` are there or one is the value
-/// `here` itself: what goes on with it makes no new extremes, so that the foot of an inversion stays stable
-/// (van Leer 1977, J. Comput. Phys. 23, 276).
-fn slope([before, here, after]: [f32; 3], both: bool) -> f32 {
+/// Slope upwards of a value between that `below` and that `above` it, of which `both` are there or one is the
+/// value `here` itself: what goes on with it makes no new extremes, so that no cold air lies at the foot of an
+/// inversion above what is warmer (van Leer 1977, J. Comput. Phys. 23, 276).
+fn slope_upwards([below, here, above]: [f32; 3], both: bool) -> f32 {
     if !both {
-        return after - before;
+        return above - below;
     }
-    let [rise, gain] = [here - before, after - here];
+    let [rise, gain] = [here - below, above - here];
     let least = 2.0 * rise.abs().min(gain.abs());
-    let central = 0.5 * (after - before);
+    let central = 0.5 * (above - below);
     if rise * gain > 0.0 { central.clamp(-least, least) } else { 0.0 }
 }
 
@@ -222,7 +222,11 @@ impl Halo {
                 mean = known[source.here as usize];
                 slopes = std::array::from_fn(|axis| {
                     let [before, after] = source.around[axis].map(|index| known[index as usize]);
-                    slope([before, mean, after], source.per_distance[axis] < 1.0)
+                    let per_distance = source.per_distance[axis];
+                    match axis {
+                        2 => slope_upwards([before, mean, after], per_distance < 1.0),
+                        _ => (after - before) * per_distance,
+                    }
                 });
             }
             let [a, b, c]: [f32; 3] =

@@ -17,12 +17,13 @@ use crate::lattice::heat_links::{Face, Given, Heat, HeatExchange};
 use crate::lattice::solver::Lattice;
 use crate::lattice::values::{read_values, write_values};
 use std::io::{Read, Result, Write};
+use std::ops::Range;
 
 /// Temperature that a box and the grid around it hand each other.
 pub(super) struct HeatCoupling {
     covered: CellBox,
-    /// Cells around in whose rows temperatures change.
-    touched: CellBox,
+    /// Levels around on which temperatures change.
+    touched: Range<usize>,
     levels: Levels,
     temperature: Halo,
     /// What is asked for, and the same a long step later.
@@ -70,7 +71,8 @@ impl HeatCoupling {
         let wind = [0, 1, 2].map(|axis| Halo::shallow(place, axis, near, own));
         let heat = Self {
             covered: place.covered,
-            touched: place.covered.grown(1, place.n_cells),
+            touched: place.covered.low[2].saturating_sub(1)
+                ..place.n_cells[2].min(place.covered.high[2] + 1),
             levels: Levels::new(place),
             known: [0, 1].map(|_| vec![0.0; temperature.asked.len()]),
             blowing: wind.each_ref().map(|halo| vec![0.0; halo.places.len()]),
@@ -163,7 +165,7 @@ impl HeatCoupling {
                 *value = 0.125 * ((pair(a) + pair(b)) + (pair(c) + pair(d)));
             }
         });
-        around.settle(self.touched.low, self.touched.high);
+        around.settle(self.touched.clone());
     }
 
     /// Writes what is on its way between two steps of the box, and what the next ones go on from.

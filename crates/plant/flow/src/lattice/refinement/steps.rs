@@ -49,11 +49,15 @@ impl Grid {
                 heat.surround(&mut self.lattice, &mut one.grid.lattice, step);
             }
             one.grid.advance(n_steps, short);
+            if n_steps.is_multiple_of(short)
+                && let Some(heat) = &mut one.heat
+            {
+                // What its step has found is no part of its state, and the steps of boxes in it may follow
+                // after a pause.
+                heat.cross(&mut one.grid.lattice);
+            }
             if (n_steps + 1).is_multiple_of(short) {
                 one.coupling.cross(exchange(&mut one.grid.lattice), step);
-                if let Some(heat) = &mut one.heat {
-                    heat.cross(&mut one.grid.lattice);
-                }
             }
         }
         if (n_steps + 1).is_multiple_of(span) {
