@@ -174,7 +174,7 @@ pub enum PlanError {
     },
     /// A box of finer cells reaches too far.
     #[error(
-        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: two cells before its sides and before the cells at the outlet that still eddies; {fix}"
+        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: {margin} cells before its sides and before the cells at the outlet that still eddies; {fix}"
     )]
     BoxOutside {
         /// Its number.
@@ -193,18 +193,22 @@ pub enum PlanError {
         least: f64,
         /// As above.
         most: f64,
+        /// Cells between.
+        margin: usize,
         /// What to change.
         fix: Box<str>,
     },
     /// Two boxes of finer cells touch, and none lies within the other.
     #[error(
-        "the boxes flow.refinement.{first} and flow.refinement.{second} overlap, or are less than two cells apart, and neither lies within the other; lay one box around the turbines of both, or make them smaller"
+        "the boxes flow.refinement.{first} and flow.refinement.{second} overlap, or are less than {margin} cells apart, and neither lies within the other; lay one box around the turbines of both, or make them smaller"
     )]
     BoxesMeet {
         /// Number of one.
         first: usize,
         /// Number of the other.
         second: String,
+        /// Cells that are to lie between.
+        margin: usize,
     },
     /// Boxes within boxes within boxes.
     #[error(

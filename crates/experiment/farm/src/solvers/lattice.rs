@@ -90,7 +90,7 @@ fn memory(case: &Case, plan: &Plan) -> u64 {
     };
     let of_temperature = if is_stratified { TEMPERATURE_BYTES } else { 0 };
     let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES + of_eddies + of_temperature;
-    plan.cells() as u64 * bytes + plan.exchange_memory()
+    plan.cells() as u64 * bytes + plan.exchange_memory(is_stratified)
 }
 
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
@@ -126,11 +126,6 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
         object("turbulence_model", Fault::Refused(why), fix);
     }
     let in_atmosphere = wind.precursor.is_some();
-    if in_atmosphere && !flow.values.tables(refinement::NAME).is_empty() {
-        let why = "boxes of finer cells hold no temperature";
-        let fix = "leave out [[flow.refinement]], or take the planes of the precursor alone, wind.planes = \"…/planes.bts\", in air without temperature";
-        object("precursor", Fault::Refused(why), fix);
-    }
     if wind.veer != 0.0 && in_atmosphere {
         let why = "the atmosphere of wind.precursor brings its own veer";
         object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");

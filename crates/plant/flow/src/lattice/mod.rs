@@ -20,7 +20,9 @@ mod ends;
 mod engine;
 mod fields;
 mod forces;
+mod heat_links;
 mod inlet;
+mod joint;
 mod kernel;
 mod layout;
 mod levels;
@@ -51,6 +53,7 @@ pub use crate::fields::{PlaneAverage, PlaneAverageState, PlaneSizeError, Volume}
 pub use crate::simd::Backend;
 pub use engine::Engine;
 pub use forces::ForceBlock;
+pub use heat_links::{Face, Given, Heat, HeatExchange, RowFill};
 pub use links::{Exchange, Fill, Link, Way};
 pub use probe::RowState;
 pub use scaling::Scaling;
