@@ -76,7 +76,7 @@ pub struct Wind {
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at
     /// hub height.
     pub veer: f64,
-    /// What happens in time, with [`Solver::UNIFORM`]; nothing when absent.
+    /// What happens in time, in deterministic wind; nothing when absent.
     pub event: Option<WindEvent>,
 }
 

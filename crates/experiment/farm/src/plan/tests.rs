@@ -256,3 +256,30 @@ fn rotors_that_turn_fast_take_shorter_steps_in_prescribed_wind() {
     let asked = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
     assert_eq!(asked.interval, 1e-3);
 }
+
+#[test]
+fn a_free_wake_is_laid_out_for_the_fastest_that_the_wind_may_turn_its_rotor() {
+    let mut case = case(&[[0.0, 0.0]]);
+    case.flow.solver = Solver::named("vortex").expect("a solver");
+    case.flow.values = basis::keys::Values::defaults(case.flow.solver.keys);
+    let laid_out = |case: &Case| plan(case, &footprints());
+    // 81 m/s at 120 m: 0.675 rad/s, and 0.79 at rated speed; 45° take 1.16 s and 0.99 s.
+    case.flow.step = Some(1.1);
+    let refused = laid_out(&case).expect_err("turbulence may bring it to rated speed").to_string();
+    assert_eq!(
+        refused,
+        "flow.step = 1.1 s is too long: T1 turns by 50° in a step at its rated speed, which this wind may bring it to, the maximum is 45°; use at most 0.9920 s, or leave the key out"
+    );
+    case.wind.turbulence_intensity = 0.0;
+    let turn = laid_out(&case).expect("no wind brings it there").turn;
+    assert!((turn - 1.1 * 81.0 / 120.0).abs() < 1e-12, "{turn}");
+    case.wind.table = Some("u.csv".to_owned());
+    assert!(laid_out(&case).is_err());
+    case.flow.step = None;
+    case.flow.values.set("steps_per_turn", 8.0);
+    let refused = laid_out(&case).expect_err("52.8° at rated speed");
+    assert_eq!(refused.key(), ["flow", "steps_per_turn"]);
+    assert!(refused.to_string().ends_with("the maximum is 45°; use 10 or more"), "{refused}");
+    case.flow.values.set("steps_per_turn", 10.0);
+    assert!(laid_out(&case).is_ok());
+}

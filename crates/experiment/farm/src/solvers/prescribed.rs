@@ -85,13 +85,12 @@ pub(super) fn uniform_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
 
 pub(super) fn turbulence_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     let file = wind.planes.is_some().then(|| no_file("flow.solver = \"turbulence\" makes its own"));
-    let event =
-        wind.event.is_some().then(|| no_event("flow.solver = \"turbulence\" is not deterministic"));
+    let event = wind.event.is_some().then(|| no_event("events are for wind without turbulence"));
     file.into_iter().chain(event).collect()
 }
 
 pub(super) fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
-    const AS_IT_IS: &str = "flow.solver = \"planes\" takes the wind as the file has it";
+    const AS_IT_IS: &str = "the wind is taken as the file has it";
     let no_use = |key, fix| Objection { key, fault: Fault::NoUse(AS_IT_IS), fix };
     let mut objections = Vec::new();
     if wind.planes.is_none() {

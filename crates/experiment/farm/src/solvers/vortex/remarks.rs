@@ -114,6 +114,10 @@ pub(super) fn warnings(case: &Case, plan: &Plan) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::{Flow, Method, Solver};
+    use crate::self_check::Tunnel;
+    use crate::solvers::vortex::{KEYS, VORTEX, with_an_end};
+    use basis::keys::Values;
 
     #[test]
     fn the_shortest_wake_lacks_a_hundredth_of_the_induction() {
@@ -122,6 +126,31 @@ mod tests {
         assert!((length / length.hypot(0.5) - SHARE_TO_WARN).abs() < 1e-12);
         // That is about a hundredth of power, too.
         assert!((in_faster_air(length, USUAL_THRUST).powi(3) - 1.01).abs() < 2e-3);
+    }
+
+    #[test]
+    fn the_check_takes_off_its_own_end_and_not_that_of_the_case() {
+        let tunnel = |downstream: f64| Tunnel {
+            upstream: 1.0,
+            downstream,
+            width: 1.0,
+            settling: 1.0,
+            averaging: 1.0,
+            spacing: 0.0,
+            interval: 0.1,
+            method: Method::default(),
+        };
+        let expected = |length: f64| {
+            let mut values = Values::defaults(&KEYS);
+            values.set("wake_length_diameters", length);
+            let flow = Flow { solver: Solver(&VORTEX), values, step: None, threads: None };
+            with_an_end(&tunnel(length.min(1.0)), &flow, 100.0, USUAL_THRUST)
+        };
+        // A wake as short as the check's is compared with an endless one as it is.
+        assert_eq!((expected(0.3), expected(1.0)), (1.0, 1.0));
+        // Of a long one's check what the check cuts off is taken off.
+        let endless = in_faster_air(1.0, USUAL_THRUST);
+        assert!((expected(40.0) / endless - 1.0).abs() < 2e-4 && endless > 1.02);
     }
 
     #[test]
