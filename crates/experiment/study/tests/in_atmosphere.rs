@@ -207,9 +207,10 @@ fn a_box_of_finer_cells_stands_in_the_atmosphere_and_goes_on_in_it() {
     let folder = study();
     // Cells as the precursor's and half of them around the rotor, up into the inversion at 150 m; planes and
     // what goes on beside.
-    let finer = "flow.refinement=[{ upstream_diameters = 0.5, downstream_diameters = 1.0, \
-        width_diameters = 1.75, height_diameters = 1.5 }]";
-    let wide = ["flow.width_diameters=3.5", "flow.cells_per_diameter=10"];
+    let finer = "flow.refinement=[{ width_diameters = 1.75, downstream_diameters = 1.0, \
+        height_diameters = 1.6 }]";
+    let wide =
+        ["flow.width_diameters=3.5", "flow.upstream_diameters=1.5", "flow.cells_per_diameter=10"];
     let setup = prepared(folder.path(), &[&[finer][..], &wide].concat()).expect("a sound case");
     assert_eq!((setup.plan.boxes.len(), setup.plan.levels.as_slice()), (1, &[1][..]));
     let told = (setup.case.flow.solver.memory)(&setup.case, &setup.plan) as f64;
