@@ -47,7 +47,7 @@ pub fn unused_flow_keys(file: &CaseFile) -> Option<String> {
     let Value::Table(flow) = &find(&entries, "flow")?.node.value else { return None };
     let names = flow.iter().map(|entry| entry.key.as_str());
     let unused: Vec<&str> = names.filter(|name| !is_used(solver, name)).collect();
-    let reads = |kind: &&&SolverKind| unused.iter().any(|name| is_used(Solver(kind), name));
+    let reads = |kind: &&&'static SolverKind| unused.iter().any(|name| is_used(Solver(kind), name));
     let kinds = SOLVERS.all();
     let readers: Vec<String> =
         kinds.iter().filter(reads).map(|kind| format!("\"{}\"", kind.name)).collect();
