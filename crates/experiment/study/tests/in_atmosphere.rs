@@ -205,12 +205,18 @@ fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
 #[test]
 fn a_box_of_finer_cells_stands_in_the_atmosphere_and_goes_on_in_it() {
     let folder = study();
-    // Cells as the precursor's and half of them around the rotor, up into the inversion at 150 m; planes and
-    // what goes on beside.
-    let finer = "flow.refinement=[{ width_diameters = 1.75, downstream_diameters = 1.0, \
-        height_diameters = 1.6 }]";
-    let wide =
-        ["flow.width_diameters=3.5", "flow.upstream_diameters=1.5", "flow.cells_per_diameter=10"];
+    // Half of the cells around the rotor, from the ground to the top: as coarse as it gets, for the rotors are
+    // checked on such cells first. Planes, and what goes on beside.
+    let finer = "flow.refinement=[{ upstream_diameters = 1.25, downstream_diameters = 1.25, \
+        width_diameters = 2.5, height_diameters = 2.25 }]";
+    let wide = [
+        "flow.cells_per_diameter=4",
+        "flow.upstream_diameters=2.25",
+        "flow.downstream_diameters=2.5",
+        "flow.width_diameters=4",
+        "flow.height_diameters=2.25",
+        "time.duration=10",
+    ];
     let setup = prepared(folder.path(), &[&[finer][..], &wide].concat()).expect("a sound case");
     assert_eq!((setup.plan.boxes.len(), setup.plan.levels.as_slice()), (1, &[1][..]));
     let told = (setup.case.flow.solver.memory)(&setup.case, &setup.plan) as f64;
