@@ -29,26 +29,12 @@ struct Way {
 }
 
 const GROUND: &str = "flow.ground={ roughness_length = 0.001 }";
-const PLANES: &str = "wind.precursor=\"{}\"";
-const OPEN: &str = "flow.sides=open";
-const WAYS: [Way; 4] = [
+const WAYS: [Way; 2] = [
     Way {
         name: "planes, periodic sides",
         folder: "study-in-atmosphere-periodic",
         is_judged: true,
-        keys: &[PLANES, GROUND],
-    },
-    Way {
-        name: "planes, open sides",
-        folder: "study-in-atmosphere-open",
-        is_judged: true,
-        keys: &[PLANES, GROUND, OPEN],
-    },
-    Way {
-        name: "precursor beside, open sides",
-        folder: "study-in-atmosphere-beside",
-        is_judged: true,
-        keys: &[PLANES, GROUND, OPEN, "wind.precursor_wind=beside"],
+        keys: &["wind.precursor=\"{}\"", GROUND],
     },
     // As studies had it before they stood in an atmosphere; told, for nothing holds its wind.
     Way {

@@ -3,7 +3,6 @@
 
 mod eddies;
 mod exchange;
-mod heat;
 mod state;
 mod worker;
 
@@ -12,8 +11,6 @@ use super::atmosphere::stratification::Stratification;
 use super::collision::SUBGRID_FACTOR;
 use super::engine::{Engine, Rows};
 use super::forces::ForceBlock;
-use super::heat_links::HeatExchange;
-use super::joint::Joint;
 use super::kernel::Kernel;
 use super::layout::{Edge, Layout, Parity};
 use super::links::Exchange;
@@ -88,17 +85,6 @@ impl Cpu {
     /// # Errors
     /// [`LatticeError::Memory`] when the system refuses that much.
     pub(crate) fn new(settings: &LatticeSettings) -> std::result::Result<Self, LatticeError> {
-        Self::joined(settings, &Joint::none(settings.n_cells[2] as f64 * settings.spacing))
-    }
-
-    /// The same for a box that lies in another as `joint` says.
-    ///
-    /// # Errors
-    /// As above.
-    pub(crate) fn joined(
-        settings: &LatticeSettings,
-        joint: &Joint,
-    ) -> std::result::Result<Self, LatticeError> {
         let scaling = settings.scaling();
         let backend = settings.backend.unwrap_or_else(Backend::detect);
         let kernel = Kernel::new(settings.stencil, backend);
@@ -110,7 +96,7 @@ impl Cpu {
         let memory = Memory::zeroed(layout.n_values()).ok_or_else(|| refused.clone())?;
         let stratification = match &settings.atmosphere {
             Some(atmosphere) => Some(
-                Stratification::new(atmosphere, settings, joint, &layout, sides, levels)
+                Stratification::new(atmosphere, settings, &layout, sides, levels)
                     .ok_or_else(|| refused.clone())?,
             ),
             None => None,
@@ -156,7 +142,7 @@ impl Cpu {
                     air.gather(share.rows.start, &heat.sums);
                 }
             }
-            air.follow(0..self.layout.n_cells[2]);
+            air.follow();
         }
     }
 
@@ -295,10 +281,6 @@ impl Engine for Cpu {
 
     fn exchange(&mut self) -> Option<&mut dyn Exchange> {
         Some(self)
-    }
-
-    fn heat(&mut self) -> Option<&mut dyn HeatExchange> {
-        self.stratification.is_some().then_some(self as &mut dyn HeatExchange)
     }
 
     fn write_state(&self, writer: &mut dyn Write) -> Result<()> {

@@ -4,14 +4,13 @@ use super::body::BodyWakes;
 use super::field::Accuracy;
 use super::segment::Cores;
 use super::sheet::{Resolution, Sheet};
+use crate::inflow::MeanProfile;
 use crate::inflow::profile::veered;
-use crate::inflow::{MeanColumn, MeanProfile};
 use basis::Vector3;
-use std::sync::Arc;
 use thiserror::Error;
 
 /// Settings of a free wake.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WakeSettings {
     /// Step (s), the only one that it is advanced by.
     pub interval: f64,
@@ -48,7 +47,7 @@ pub struct WakeSettings {
 /// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it; here
 /// the wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free
 /// vortices".
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeanShear {
     /// They carry wakes as all of the wind does.
     Carries,
@@ -62,21 +61,14 @@ pub enum MeanShear {
         /// Veer (rad/m), see [`DeterministicWind`](crate::inflow::DeterministicWind).
         veer: f64,
     },
-    /// They do not, likewise, with the mean wind of a record of its own.
-    LeftOutOf(Arc<MeanColumn>),
 }
 
 impl MeanShear {
     /// The mean wind at `height` (m), of which wakes are carried by its value at their own hubs (m/s, farm
     /// frame); none where it carries them as it is.
     pub(super) fn left_out(&self, height: f64) -> Vector3 {
-        let [x, y] = match self {
-            Self::Carries => [0.0; 2],
-            Self::LeftOut { profile, hub_height, veer } => {
-                veered(profile.speed(height), *veer, height - hub_height)
-            }
-            Self::LeftOutOf(column) => column.at(height).wind,
-        };
+        let Self::LeftOut { profile, hub_height, veer } = self else { return Vector3::ZERO };
+        let [x, y] = veered(profile.speed(height), *veer, height - hub_height);
         Vector3::new(x, y, 0.0)
     }
 }

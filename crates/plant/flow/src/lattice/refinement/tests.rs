@@ -4,7 +4,6 @@ mod exactness;
 mod fields;
 mod ground;
 mod wake;
-mod warm;
 mod waves;
 
 use super::boxes::beyond;
