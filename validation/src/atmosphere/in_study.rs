@@ -29,12 +29,26 @@ struct Way {
 }
 
 const GROUND: &str = "flow.ground={ roughness_length = 0.001 }";
-const WAYS: [Way; 2] = [
+const PLANES: &str = "wind.precursor=\"{}\"";
+const OPEN: &str = "flow.sides=open";
+const WAYS: [Way; 4] = [
     Way {
         name: "planes, periodic sides",
         folder: "study-in-atmosphere-periodic",
         is_judged: true,
-        keys: &["wind.precursor=\"{}\"", GROUND],
+        keys: &[PLANES, GROUND],
+    },
+    Way {
+        name: "planes, open sides",
+        folder: "study-in-atmosphere-open",
+        is_judged: true,
+        keys: &[PLANES, GROUND, OPEN],
+    },
+    Way {
+        name: "precursor beside, open sides",
+        folder: "study-in-atmosphere-beside",
+        is_judged: true,
+        keys: &[PLANES, GROUND, OPEN, "wind.precursor_wind=beside"],
     },
     // As studies had it before they stood in an atmosphere; told, for nothing holds its wind.
     Way {

@@ -90,6 +90,7 @@ impl TurbineModel {
             diameter: self.definition.rotor_diameter(),
             hub_height: self.definition.rotor.hub_height,
             tip_speed: self.rotor_speed(wind_speed) * self.definition.rotor_radius(),
+            rated_tip_speed: self.constants.rated_rotor_speed * self.definition.rotor_radius(),
         }
     }
 

@@ -76,7 +76,7 @@ pub struct Wind {
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at
     /// hub height.
     pub veer: f64,
-    /// What happens in time, with [`Solver::UNIFORM`]; nothing when absent.
+    /// What happens in time, in deterministic wind; nothing when absent.
     pub event: Option<WindEvent>,
 }
 
@@ -89,6 +89,14 @@ impl Wind {
     /// Whether it comes from recorded planes, of a file or of a precursor.
     pub fn brings_planes(&self) -> bool {
         self.is_brought() && !self.precursor_beside
+    }
+
+    /// Whether it changes in time: it is turbulent, something happens in it, or a file says what.
+    pub fn varies(&self) -> bool {
+        self.turbulence_intensity > 0.0
+            || self.event.is_some()
+            || self.table.is_some()
+            || self.is_brought()
     }
 
     /// Where the mean wind comes from, for records and readers (deg, clockwise from north).

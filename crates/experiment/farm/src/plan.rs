@@ -52,6 +52,8 @@ pub struct Footprint {
     pub hub_height: f64,
     /// Tip speed in the case's mean wind (m/s).
     pub tip_speed: f64,
+    /// Tip speed at rated rotor speed (m/s), which stronger wind brings the rotor to.
+    pub rated_tip_speed: f64,
 }
 
 /// Turbines where they stand.

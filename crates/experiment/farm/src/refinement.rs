@@ -18,7 +18,7 @@ pub static KEY: Key = key(
 /// `[[flow.refinement]]`.
 pub static TABLE: Table = Table {
     heading: "[[flow.refinement]]",
-    about: "A box of finer cells around turbines, from the ground upwards: half as large as those around it, moved by steps of half the length. A box within another halves once more. It is sized from the layout as the domain is, in diameters of the first turbine, and rounded up to whole cells. A rotor stands in it with six of its cells to spare, which is how far forces are spread, or as far outside. It ends at least two cells before the sides of what is around it, before other boxes, and before the cells at the outlet in which eddies are stilled (a tenth of the domain, 24 at most). `flow.step` is that of the finest cells. One is set by its number from 0: `--set flow.refinement.0.width_diameters=3`.",
+    about: "A box of finer cells around turbines, from the ground upwards: half as large as those around it, moved by steps of half the length. A box within another halves once more. It is sized from the layout as the domain is, in diameters of the first turbine, and rounded up to whole cells. A rotor stands in it with six of its cells to spare, which is how far forces are spread, or as far outside. It ends at least two cells (three in the atmosphere of a precursor) before the sides of what is around it, before other boxes, and before the cells at the outlet in which eddies are stilled (a tenth of the domain, 24 at most). `flow.step` is that of the finest cells. One is set by its number from 0: `--set flow.refinement.0.width_diameters=3`.",
     keys: &[
         key(
             "around",

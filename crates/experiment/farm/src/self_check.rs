@@ -219,7 +219,7 @@ pub fn self_check(
     }
     let wall_time = started.elapsed().as_secs_f64();
 
-    let equivalent = |thrust| (flow.solver.equivalent_speed)(tunnel, diameter, thrust);
+    let equivalent = |thrust| (flow.solver.equivalent_speed)(tunnel, flow, diameter, thrust);
     let expected = expectation(definition, wind, rotor_speed, pitch, equivalent);
     let updates = (flow.solver.updates_alone)(tunnel, diameter) * n_steps as f64;
     Ok(SelfCheck {

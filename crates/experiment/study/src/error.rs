@@ -6,6 +6,7 @@ use farm::assemble::AssemblyError;
 use farm::pitch_response::CalibrationError;
 use farm::plan::PlanError;
 use farm::self_check::SelfCheckError;
+use flow::FlowError;
 use flow::inflow::InflowError;
 use flow::lattice::{LatticeError, PlaneSizeError};
 use formats::atomic::FileError;
@@ -88,12 +89,14 @@ pub enum StudyError {
     PlaneSize(#[from] PlaneSizeError),
     /// The simulation broke down, or a controller ended it.
     #[error("run {run} {}: {source}", verb(source))]
-    #[diagnostic(help("{}", kept(source, checkpoint, series)))]
+    #[diagnostic(help("{}", kept(source, steadier, checkpoint, series)))]
     Diverged {
         /// Run.
         run: String,
         /// Where and when.
         source: Box<FarmError>,
+        /// What may carry its air, see [`SolverKind::steadier`](farm::solvers::SolverKind::steadier).
+        steadier: &'static str,
         /// Last good checkpoint, if there is one.
         checkpoint: Option<PathBuf>,
         /// Series up to that time.
@@ -313,15 +316,25 @@ fn put_back(file: &str, sha256: &Option<String>) -> String {
 /// How `source` ended a run.
 fn verb(source: &FarmError) -> &'static str {
     match source {
-        FarmError::Controller { .. } => "ended early",
+        FarmError::Controller { .. } | FarmError::Flow(FlowError::TurnedTooFar { .. }) => {
+            "ended early"
+        }
         _ => "diverged",
     }
 }
 
-/// What to do after `source`, and what is left.
-fn kept(source: &FarmError, checkpoint: &Option<PathBuf>, series: &Option<PathBuf>) -> String {
+/// What to do after `source` in air that `steadier` may carry, and what is left.
+fn kept(
+    source: &FarmError,
+    steadier: &str,
+    checkpoint: &Option<PathBuf>,
+    series: &Option<PathBuf>,
+) -> String {
     let mut text = String::from(match source {
-        FarmError::Flow(_) => "a shorter flow.step or more cells may carry it",
+        FarmError::Flow(FlowError::TurnedTooFar { .. }) => {
+            "lower flow.step or raise flow.steps_per_turn, so that the rotor turns less in a step; where it turns faster than it is made for, look at its controller"
+        }
+        FarmError::Flow(_) => steadier,
         FarmError::Controller { .. } => {
             "the message is the controller's own: look into its input, and at what it saw before"
         }

@@ -71,6 +71,7 @@ impl Ready {
             kept.advance(&mut farm).map_err(|source| StudyError::Diverged {
                 run: run.name.clone(),
                 source: Box::new(source),
+                steadier: prepared.case.flow.solver.steadier,
                 checkpoint: None,
                 series: None,
             })?;

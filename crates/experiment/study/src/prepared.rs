@@ -94,6 +94,7 @@ impl Prepared {
             None => wind::without_turbulence(&case, &plan)?,
         };
         let mut warnings = warnings::of(&case, &plan);
+        warnings.extend(formats::case::unused_flow_keys(file).map(SetupWarning::from));
         let surroundings = atmosphere::surroundings(file, &plan)?;
         let memory_beside = atmosphere::memory_beside(&case, file.folder())?;
         let site =

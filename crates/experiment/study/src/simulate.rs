@@ -183,6 +183,7 @@ impl<'a> Simulation<'a> {
         StudyError::Diverged {
             run: self.job.run.name.clone(),
             source: Box::new(source),
+            steadier: self.job.ready.prepared.case.flow.solver.steadier,
             checkpoint: checkpoint.exists().then_some(checkpoint),
             series,
         }

@@ -6,6 +6,7 @@ mod small;
 use farm::FarmError;
 use farm::self_check::SelfCheck;
 use flow::FlowError;
+use miette::Diagnostic;
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::Path;
@@ -163,6 +164,9 @@ fn a_wake_that_blows_up_ends_its_run_and_leaves_the_checkpoint_before() {
     let longer = StudyOptions { resume: true, ..options(folder.path(), "out") };
     for _ in 0..2 {
         let error = small::run(&longer).expect_err("no wake is as fast");
+        // Its own keys, none of the lattice's.
+        let help = error.help().expect("a fix").to_string();
+        assert!(help.contains("flow.core_growth") && !help.contains("cells"), "{help}");
         let StudyError::Diverged { source, checkpoint, series, .. } = error else {
             panic!("{error:?}")
         };

@@ -90,7 +90,7 @@ pub enum FlowError {
     #[error(transparent)]
     Inflow(#[from] inflow::InflowError),
     /// The field is no longer physical.
-    #[error("the flow diverged at {time:.2} s near x {x:.0} m, y {y:.0} m, z {z:.0} m (speed {speed} m/s)", x = position.x, y = position.y, z = position.z)]
+    #[error("the flow diverged at {time:.2} s near x {x:.0} m, y {y:.0} m, z {z:.0} m (speed {speed} m/s)", x = position.x, y = position.y, z = position.z, speed = told_speed(*speed))]
     Diverged {
         /// Simulated time (s).
         time: f64,
@@ -98,6 +98,18 @@ pub enum FlowError {
         position: Vector3,
         /// Speed there (m/s), possibly not a number.
         speed: f64,
+    },
+    /// A rotor turned so far in a step that what its blades leave behind is no helix.
+    #[error("a rotor turned by {turn:.0}° in the step up to {time:.2} s, at x {x:.0} m, y {y:.0} m, z {z:.0} m; the maximum is {most:.0}°", turn = turn.to_degrees(), most = most.to_degrees(), x = position.x, y = position.y, z = position.z)]
+    TurnedTooFar {
+        /// Simulated time at the end of the step (s).
+        time: f64,
+        /// Middle of the rotor, farm frame (m).
+        position: Vector3,
+        /// Angle (rad).
+        turn: f64,
+        /// Greatest angle (rad).
+        most: f64,
     },
     /// A duration that is not a whole number of the solver's steps.
     #[error("cannot advance by {duration} s, which is not a whole number of steps of {step} s")]
@@ -107,4 +119,33 @@ pub enum FlowError {
         /// Step (s).
         step: f64,
     },
+}
+
+/// `speed` (m/s) of air that is no longer physical, in as many digits as say something: it may have forty
+/// before the point.
+fn told_speed(speed: f64) -> String {
+    const MOST_WRITTEN_OUT: f64 = 1e5;
+    if speed.abs() < MOST_WRITTEN_OUT { format!("{speed:.1}") } else { format!("{speed:.1e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_that_cannot_be_are_told_in_few_digits() {
+        let told = |speed| {
+            let position = Vector3::new(1.4, -2.0, 90.0);
+            FlowError::Diverged { time: 5.0, position, speed }.to_string()
+        };
+        for (speed, expected) in [
+            (512.345678901234, "(speed 512.3 m/s)"),
+            (1.23456789e38, "(speed 1.2e38 m/s)"),
+            (f64::INFINITY, "(speed inf m/s)"),
+            (f64::NAN, "(speed NaN m/s)"),
+        ] {
+            let text = told(speed);
+            assert!(text.ends_with(expected), "{text}");
+        }
+    }
 }

@@ -1,11 +1,15 @@
-//! A step of a free wake takes no memory from the system once the wake has its length.
+//! A step of a free wake takes no memory from the system once the wake has its length, nor does one of a
+//! lattice.
 
 use basis::{BoundVortex, PointForce, Vector3};
 use flow::inflow::{MeanProfile, PrescribedWind};
+use flow::lattice::atmosphere::Atmosphere;
+use flow::lattice::refinement::{Refined, Refinement};
+use flow::lattice::{Ground, Lattice, LatticeSettings, Sides, Subgrid, SubgridModel};
 use flow::vortex::{
     Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
 };
-use flow::{FlowSolver, WindField};
+use flow::{FlowSolver, Inflow, WindField};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -132,4 +136,56 @@ fn a_step_of_a_free_wake_allocates_nothing() {
     let before = COUNT.with(Cell::get);
     std::hint::black_box(vec![0_u8; 64]);
     assert_eq!(COUNT.with(Cell::get) - before, 1, "the count sees what is allocated");
+}
+
+/// Wind that veers with height and is warmer above.
+struct Veering;
+
+impl Inflow for Veering {
+    fn sample(&self, time: f64, positions: &[Vector3], velocities: &mut [Vector3]) {
+        for (position, velocity) in positions.iter().zip(velocities) {
+            let across = 0.01 * (position.z - 45.0) + 0.1 * (0.5 * time).sin();
+            *velocity = Vector3::new(8.0, across, 0.0);
+        }
+    }
+
+    fn sample_temperature(&self, _: f64, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
+        for (position, temperature) in positions.iter().zip(temperatures) {
+            *temperature = 300.0 + 0.003 * position.z;
+        }
+        true
+    }
+}
+
+#[test]
+fn a_step_of_a_lattice_with_open_sides_allocates_nothing() {
+    let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [24, 10, 9], 0.1, 8.0);
+    (settings.sides, settings.threads) = (Sides::Open, Some(1));
+    settings.ground = Ground::WallStress { roughness_length: 0.05 };
+    settings.subgrid = Subgrid::new(SubgridModel::MinimumDissipation);
+    settings.atmosphere = Some(Atmosphere::new(300.0));
+    let mut air = Lattice::new(settings, Arc::new(Veering)).expect("sound settings");
+    let force = PointForce::of_body(Vector3::new(90.0, 50.0, 45.0), Vector3::X * -1e3, 15.0);
+    // The forces take their room at first.
+    air.advance(2.0, &[force]).expect("no divergence");
+    let before = COUNT.with(Cell::get);
+    air.advance(4.0, &[force]).expect("no divergence");
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
+}
+
+#[test]
+fn a_step_of_boxes_in_an_atmosphere_allocates_nothing() {
+    let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [24, 14, 12], 0.1, 8.0);
+    (settings.sides, settings.threads) = (Sides::Open, Some(1));
+    settings.ground = Ground::WallStress { roughness_length: 0.05 };
+    settings.atmosphere = Some(Atmosphere::new(300.0));
+    let within =
+        vec![Refinement { first_cell: [4, 4, 0], n_cells: [12, 8, 9], within: Vec::new() }];
+    let place = Refinement { first_cell: [4, 3, 0], n_cells: [10, 8, 7], within };
+    let mut air = Refined::new(settings, &[place], Arc::new(Veering)).expect("sound settings");
+    let force = PointForce::of_body(Vector3::new(90.0, 70.0, 35.0), Vector3::X * -1e3, 10.0);
+    air.advance(2.0, &[force]).expect("no divergence");
+    let before = COUNT.with(Cell::get);
+    air.advance(4.0, &[force]).expect("no divergence");
+    assert_eq!(COUNT.with(Cell::get) - before, 0);
 }

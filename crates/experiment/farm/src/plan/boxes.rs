@@ -2,11 +2,11 @@
 
 use super::{Footprint, Layout, MOST_LEVELS, PlanError};
 use crate::case::{Case, Placement};
-use crate::domain::SMEARING_CELLS;
+use crate::domain::{SMEARING_CELLS, Sides};
 use crate::refinement::{Asked, asked};
 use basis::Vector3;
 use flow::lattice::LatticeSettings;
-use flow::lattice::refinement::{MARGIN, Refinement};
+use flow::lattice::refinement::{MARGIN, Refinement, WARM_MARGIN};
 use flow::lattice::spreading::REACH;
 
 /// Rounding of lengths in cells (–).
@@ -42,6 +42,8 @@ struct Around {
     kept: usize,
     /// Whether a box may reach to its first and last cells along each axis.
     walls: [[bool; 2]; 3],
+    /// Cells before its sides, and between boxes, where there is to be none.
+    margin: usize,
 }
 
 /// The boxes that `case` asks for, in the cells that `settings` lay out.
@@ -59,9 +61,10 @@ pub(super) fn lay_out(
     }
     // The largest first: whatever lies within another finds it there.
     wanted.sort_by(|a, b| b.volume().total_cmp(&a.volume()));
+    let margin = if case.wind.precursor.is_some() { WARM_MARGIN } else { MARGIN };
     let mut tree = Vec::new();
     for one in wanted {
-        one.place(&mut tree)?;
+        one.place(&mut tree, margin)?;
     }
     let domain = Around {
         number: None,
@@ -69,7 +72,8 @@ pub(super) fn lay_out(
         spacing: settings.spacing,
         n_cells: settings.n_cells,
         kept: settings.sponge_cells(),
-        walls: [[false; 2], [true; 2], [true; 2]],
+        walls: [[false; 2], [case.flow.domain().sides != Sides::Open; 2], [true; 2]],
+        margin,
     };
     let outermost = domain.refined(&tree)?;
     if let Some(depth) = outermost.iter().map(Refinement::depth).max()
@@ -112,13 +116,13 @@ impl Wanted {
     }
 
     /// Puts it among `others`, or within the one that holds it.
-    fn place(self, others: &mut Vec<Wanted>) -> Result<(), PlanError> {
+    fn place(self, others: &mut Vec<Wanted>, margin: usize) -> Result<(), PlanError> {
         let spans = |other: &Wanted| {
             let (low, high) = (self.low - other.low, other.high - self.high);
             low.min(high).min_element() >= -ROUNDING
         };
         if let Some(other) = others.iter_mut().find(|other| spans(other)) {
-            return self.place(&mut other.within);
+            return self.place(&mut other.within, margin);
         }
         let meets = |other: &&Wanted| {
             let overlap = self.high.min(other.high) - self.low.max(other.low);
@@ -126,7 +130,7 @@ impl Wanted {
         };
         if let Some(other) = others.iter().find(meets) {
             let (first, second) = (other.number.min(self.number), other.number.max(self.number));
-            return Err(PlanError::BoxesMeet { first, second: second.to_string() });
+            return Err(PlanError::BoxesMeet { first, second: second.to_string(), margin });
         }
         others.push(self);
         Ok(())
@@ -139,16 +143,17 @@ impl Around {
         let mut boxes: Vec<Refinement> = Vec::with_capacity(wanted.len());
         for (index, one) in wanted.iter().enumerate() {
             let mut cut = self.cut(one)?;
+            let margin = self.margin;
             let apart = |other: &Refinement| {
                 (0..3).any(|axis| {
-                    let end = |one: &Refinement| one.first_cell[axis] + one.n_cells[axis] + MARGIN;
+                    let end = |one: &Refinement| one.first_cell[axis] + one.n_cells[axis] + margin;
                     end(other) <= cut.first_cell[axis] || end(&cut) <= other.first_cell[axis]
                 })
             };
             if let Some(place) = boxes.iter().position(|other| !apart(other)) {
                 let numbers = [wanted[place].number, wanted[index].number];
                 let [first, second] = [numbers[0].min(numbers[1]), numbers[0].max(numbers[1])];
-                return Err(PlanError::BoxesMeet { first, second: second.to_string() });
+                return Err(PlanError::BoxesMeet { first, second: second.to_string(), margin });
             }
             cut.within = self.inside(one, &cut).refined(&one.within)?;
             boxes.push(cut);
@@ -165,6 +170,7 @@ impl Around {
             spacing: 0.5 * self.spacing,
             n_cells: cut.fine_cells(),
             kept: 0,
+            margin: self.margin,
             walls: std::array::from_fn(|axis| {
                 let end = cut.first_cell[axis] + cut.n_cells[axis];
                 [
@@ -185,7 +191,7 @@ impl Around {
             let kept = if axis == 0 { self.kept as f64 } else { 0.0 };
             let first = (low[axis] + ROUNDING).floor();
             let end = (high[axis] - ROUNDING).ceil();
-            let margin = MARGIN as f64;
+            let margin = self.margin as f64;
             let apart = [first >= margin, end + margin <= n - kept];
             // Sides along which air slips, or that lead to each other, are as good as none to a box from the
             // one to the other.
@@ -205,7 +211,7 @@ impl Around {
     fn refusal(&self, one: &Wanted, axis: usize, side: usize) -> PlanError {
         let [low, high] = [one.low, one.high].map(|corner| corner.to_array()[axis]);
         let (start, length) = (self.origin.to_array()[axis], self.n_cells[axis] as f64);
-        let margin = MARGIN as f64 * self.spacing;
+        let margin = self.margin as f64 * self.spacing;
         let kept = if axis == 0 { self.kept as f64 * self.spacing } else { 0.0 };
         let (own, further) = match (axis, side) {
             (0, 0) => ("upstream_diameters", "flow.upstream_diameters"),
@@ -229,6 +235,7 @@ impl Around {
             around: around.into(),
             least: start + if axis == 2 { 0.0 } else { margin },
             most: start + length * self.spacing - margin - kept,
+            margin: self.margin,
             fix: format!("lower its {own}, or raise {further}{whole}").into(),
         }
     }

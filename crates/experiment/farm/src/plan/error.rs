@@ -94,19 +94,23 @@ pub enum PlanError {
     },
     /// A rotor turns so far in a step that the wake behind it is no helix.
     #[error(
-        "flow.step = {step} s is too long: {name} turns by {turn_deg:.0}° in it, the maximum is {most_deg:.0}°; use at most {longest:.3} s, or leave the key out"
+        "{what}: {name} turns by {turn_deg:.0}° in a step {when}, the maximum is {most_deg:.0}°; {fix}"
     )]
     TurnsTooFar {
         /// Turbine.
         name: String,
-        /// Step given (s).
-        step: f64,
+        /// Key that decides.
+        key: &'static str,
+        /// What of it is wrong, in words.
+        what: String,
         /// Angle (deg).
         turn_deg: f64,
+        /// When it turns so far, in words.
+        when: &'static str,
         /// Greatest angle (deg).
         most_deg: f64,
-        /// Longest step (s).
-        longest: f64,
+        /// What to change.
+        fix: String,
     },
     /// A turbine stands still in this wind.
     #[error(
@@ -170,7 +174,7 @@ pub enum PlanError {
     },
     /// A box of finer cells reaches too far.
     #[error(
-        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: two cells before its sides and before the cells at the outlet that still eddies; {fix}"
+        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: {margin} cells before its sides and before the cells at the outlet that still eddies; {fix}"
     )]
     BoxOutside {
         /// Its number.
@@ -189,18 +193,22 @@ pub enum PlanError {
         least: f64,
         /// As above.
         most: f64,
+        /// Cells between.
+        margin: usize,
         /// What to change.
         fix: Box<str>,
     },
     /// Two boxes of finer cells touch, and none lies within the other.
     #[error(
-        "the boxes flow.refinement.{first} and flow.refinement.{second} overlap, or are less than two cells apart, and neither lies within the other; lay one box around the turbines of both, or make them smaller"
+        "the boxes flow.refinement.{first} and flow.refinement.{second} overlap, or are less than {margin} cells apart, and neither lies within the other; lay one box around the turbines of both, or make them smaller"
     )]
     BoxesMeet {
         /// Number of one.
         first: usize,
         /// Number of the other.
         second: String,
+        /// Cells that are to lie between.
+        margin: usize,
     },
     /// Boxes within boxes within boxes.
     #[error(
@@ -246,12 +254,10 @@ impl PlanError {
             Self::OutsideDomain { name, .. } => vec!["turbine", name, "position_diameters"],
             Self::Overlap { second, .. } => vec!["turbine", second, "position_diameters"],
             Self::TooCoarse { .. } => vec!["flow", "cells_per_diameter"],
-            Self::TipOutruns { .. }
-            | Self::TooFast { .. }
-            | Self::TooSlow { .. }
-            | Self::TurnsTooFar { .. } => {
+            Self::TipOutruns { .. } | Self::TooFast { .. } | Self::TooSlow { .. } => {
                 vec!["flow", "step"]
             }
+            Self::TurnsTooFar { key, .. } => vec!["flow", *key],
             Self::NotInOperation { key, .. } => vec!["wind", *key],
             Self::TooRough { .. } => vec!["wind", "roughness_length"],
             Self::VeersTooFar { .. } => vec!["wind", "veer_deg_per_m"],

@@ -1,7 +1,6 @@
 //! The grids of a plan: that of the domain, and those of the boxes of finer cells in it.
 
 use super::Plan;
-use flow::lattice::Stencil;
 use flow::lattice::refinement::Refinement;
 
 /// Cells of one size.
@@ -87,13 +86,10 @@ impl Plan {
         self.updates_of_step() * self.n_steps as f64
     }
 
-    /// Memory of what grids hand each other (bytes), about.
-    pub fn exchange_memory(&self) -> u64 {
-        fn of(boxes: &[Refinement], stencil: Stencil) -> u64 {
-            let of_box = |one: &Refinement| one.exchange_memory(stencil) + of(&one.within, stencil);
-            boxes.iter().map(of_box).sum()
-        }
-        of(&self.boxes, self.method.stencil)
+    /// Memory of what grids hand each other (bytes), about, in air with temperature (`is_warm`) or without.
+    pub fn exchange_memory(&self, is_warm: bool) -> u64 {
+        let stencil = self.method.stencil;
+        self.boxes.iter().map(|one| one.exchange_memory(stencil, is_warm)).sum()
     }
 
     /// Time between rows of the series (s).

@@ -84,7 +84,8 @@ fn settings_of(case: &Case, plan: &Plan) -> LatticeSettings {
 }
 
 fn footprints() -> BTreeMap<String, Footprint> {
-    let footprint = Footprint { diameter: 240.0, hub_height: 150.0, tip_speed: 81.0 };
+    let footprint =
+        Footprint { diameter: 240.0, hub_height: 150.0, tip_speed: 81.0, rated_tip_speed: 95.0 };
     BTreeMap::from([("model".to_owned(), footprint)])
 }
 
@@ -246,11 +247,39 @@ fn rotors_that_turn_fast_take_shorter_steps_in_prescribed_wind() {
     let mut case = case(&[[0.0, 0.0]]);
     case.flow.solver = Solver::UNIFORM;
     // A model of 0.58 m at tip-speed ratio 5 in 5 m/s: 86 rad/s.
-    let footprint = Footprint { diameter: 0.58, hub_height: 1.425, tip_speed: 25.0 };
+    let footprint =
+        Footprint { diameter: 0.58, hub_height: 1.425, tip_speed: 25.0, rated_tip_speed: 25.0 };
     let small = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
     assert!((small.interval * 25.0 / 0.29 - FARTHEST_PRESCRIBED_TURN).abs() < 1e-12);
     assert!((small.row_interval() / small.interval - 5.0).abs() < 1e-9);
     case.flow.step = Some(1e-3);
     let asked = plan(&case, &BTreeMap::from([("model".to_owned(), footprint)])).unwrap();
     assert_eq!(asked.interval, 1e-3);
+}
+
+#[test]
+fn a_free_wake_is_laid_out_for_the_fastest_that_the_wind_may_turn_its_rotor() {
+    let mut case = case(&[[0.0, 0.0]]);
+    case.flow.solver = Solver::named("vortex").expect("a solver");
+    case.flow.values = basis::keys::Values::defaults(case.flow.solver.keys);
+    let laid_out = |case: &Case| plan(case, &footprints());
+    // 81 m/s at 120 m: 0.675 rad/s, and 0.79 at rated speed; 45° take 1.16 s and 0.99 s.
+    case.flow.step = Some(1.1);
+    let refused = laid_out(&case).expect_err("turbulence may bring it to rated speed").to_string();
+    assert_eq!(
+        refused,
+        "flow.step = 1.1 s is too long: T1 turns by 50° in a step at its rated speed, which this wind may bring it to, the maximum is 45°; use at most 0.9920 s, or leave the key out"
+    );
+    case.wind.turbulence_intensity = 0.0;
+    let turn = laid_out(&case).expect("no wind brings it there").turn;
+    assert!((turn - 1.1 * 81.0 / 120.0).abs() < 1e-12, "{turn}");
+    case.wind.table = Some("u.csv".to_owned());
+    assert!(laid_out(&case).is_err());
+    case.flow.step = None;
+    case.flow.values.set("steps_per_turn", 8.0);
+    let refused = laid_out(&case).expect_err("52.8° at rated speed");
+    assert_eq!(refused.key(), ["flow", "steps_per_turn"]);
+    assert!(refused.to_string().ends_with("the maximum is 45°; use 10 or more"), "{refused}");
+    case.flow.values.set("steps_per_turn", 10.0);
+    assert!(laid_out(&case).is_ok());
 }

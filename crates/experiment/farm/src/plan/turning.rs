@@ -1,8 +1,9 @@
 //! The step of a free wake: so many to a turn of the fastest rotor.
 
-use super::{Layout, Plan, PlanError, check_planes, without_cells};
+use super::{Footprint, Layout, Plan, PlanError, check_planes, without_cells};
 use crate::case::Case;
 use basis::Vector3;
+use flow::vortex::FARTHEST_TURN;
 use std::f64::consts::TAU;
 
 /// Air of planes and volumes upstream of the foremost turbine, to either side of the outermost ones, and
@@ -10,9 +11,6 @@ use std::f64::consts::TAU;
 const UPSTREAM: f64 = 2.0;
 const BESIDE: f64 = 1.5;
 const ABOVE: f64 = 1.5;
-
-/// Farthest that a rotor may turn in a step (rad).
-const FARTHEST: f64 = TAU / 8.0;
 
 /// Numbers from which the plan of a free wake follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,25 +45,12 @@ impl Turning {
 /// # Errors
 /// [`PlanError::TurnsTooFar`] for a step in which a rotor turns too far, and those of planes.
 pub fn by_turns(case: &Case, layout: &Layout, turning: &Turning) -> Result<Plan, PlanError> {
-    let rate = |footprint: &super::Footprint| footprint.tip_speed / (0.5 * footprint.diameter);
-    let rates = layout.machines.iter().map(|(placement, footprint)| (placement, rate(footprint)));
-    let (name, fastest) = rates
-        .reduce(|a, b| if b.1 > a.1 { b } else { a })
-        .map_or(("", 0.0), |(placement, rate)| (placement.name.as_str(), rate));
+    let (_, fastest) = fastest(layout, |footprint| footprint.tip_speed);
     let step = match case.flow.step {
         Some(step) => step,
         None => 60.0 / (60.0 * fastest * turning.steps_per_turn / TAU).ceil().max(1.0),
     };
-    let turn = fastest * step;
-    if turn > FARTHEST {
-        return Err(PlanError::TurnsTooFar {
-            name: name.to_owned(),
-            step,
-            turn_deg: turn.to_degrees(),
-            most_deg: FARTHEST.to_degrees(),
-            longest: FARTHEST / fastest,
-        });
-    }
+    let turn = farthest_turn(case, layout, turning, step)?;
     let mut stepped = case.clone();
     stepped.flow.step = Some(step);
     let plan = shown(without_cells(&stepped, layout)?, layout, turning);
@@ -73,6 +58,60 @@ pub fn by_turns(case: &Case, layout: &Layout, turning: &Turning) -> Result<Plan,
     let longest = turning.longest(&plan.positions, plan.diameter) * plan.diameter;
     let n_growing_steps = (longest / (turning.wake_speed * step)).ceil() as u64;
     Ok(Plan { turn, n_growing_steps, ..plan })
+}
+
+/// The fastest rotor of `layout` whose tips have the speed that `tip_speed` gives, by its turbine's name, and
+/// how fast it turns (rad/s).
+fn fastest<'a>(layout: &Layout<'a>, tip_speed: impl Fn(&Footprint) -> f64) -> (&'a str, f64) {
+    let rate = |one: &Footprint| tip_speed(one) / (0.5 * one.diameter);
+    let rates = layout.machines.iter().map(|(placement, one)| (*placement, rate(one)));
+    let fastest = rates.reduce(|a, b| if b.1 > a.1 { b } else { a });
+    fastest.map_or(("", 0.0), |(placement, rate)| (placement.name.as_str(), rate))
+}
+
+/// Angle (rad) by which a rotor of `layout` turns in a `step` (s): in the mean wind, or at its rated speed
+/// where the wind varies and may bring it there.
+///
+/// # Errors
+/// [`PlanError::TurnsTooFar`].
+fn farthest_turn(
+    case: &Case,
+    layout: &Layout,
+    turning: &Turning,
+    step: f64,
+) -> Result<f64, PlanError> {
+    let varies = case.wind.varies();
+    let in_mean_wind = fastest(layout, |footprint| footprint.tip_speed);
+    let at_most = |one: &Footprint| one.tip_speed.max(one.rated_tip_speed);
+    let (name, rate) = if varies { fastest(layout, at_most) } else { in_mean_wind };
+    let turn = rate * step;
+    if turn <= FARTHEST_TURN {
+        return Ok(turn);
+    }
+    let [turn_deg, most_deg] = [turn, FARTHEST_TURN].map(f64::to_degrees);
+    let (is_given, per_turn) = (case.flow.step.is_some(), turning.steps_per_turn);
+    let what = if is_given {
+        format!("flow.step = {step} s is too long")
+    } else {
+        format!("flow.steps_per_turn = {per_turn} is too few")
+    };
+    let fix = if is_given {
+        // Rounded down, so that what is printed can be taken.
+        format!(
+            "use at most {:.4} s, or leave the key out",
+            (1e4 * FARTHEST_TURN / rate).floor() / 1e4
+        )
+    } else {
+        let least = TAU / FARTHEST_TURN * rate / in_mean_wind.1;
+        format!("use {:.0} or more", least.ceil())
+    };
+    let when = if varies {
+        "at its rated speed, which this wind may bring it to"
+    } else {
+        "in the mean wind"
+    };
+    let key = if is_given { "step" } else { "steps_per_turn" };
+    Err(PlanError::TurnsTooFar { name: name.to_owned(), key, what, turn_deg, when, most_deg, fix })
 }
 
 /// `plan` with the points of planes and volumes about the turbines of `layout` and their wakes.

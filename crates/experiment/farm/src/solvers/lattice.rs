@@ -65,6 +65,7 @@ pub static LATTICE: SolverKind = SolverKind {
     reach: |_, _| 0.0,
     memory,
     less_memory: "flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters",
+    steadier: "a shorter flow.step or more cells (flow.cells_per_diameter) may carry it",
     begin,
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,
@@ -89,7 +90,7 @@ fn memory(case: &Case, plan: &Plan) -> u64 {
     };
     let of_temperature = if is_stratified { TEMPERATURE_BYTES } else { 0 };
     let bytes = 4 * plan.method.stencil.n_directions() + FURTHER_BYTES + of_eddies + of_temperature;
-    plan.cells() as u64 * bytes + plan.exchange_memory()
+    plan.cells() as u64 * bytes + plan.exchange_memory(is_stratified)
 }
 
 fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
@@ -98,7 +99,7 @@ fn begin_alone(alone: &Alone) -> Result<Air, SolverError> {
 }
 
 /// The speed-up between the walls of `tunnel`, as [`SolverKind::equivalent_speed`] has it.
-fn in_a_channel(tunnel: &Tunnel, diameter: f64, thrust_coefficient: f64) -> f64 {
+fn in_a_channel(tunnel: &Tunnel, _: &Flow, diameter: f64, thrust_coefficient: f64) -> f64 {
     let width = tunnel.n_cells(diameter)[1] as f64 * tunnel.spacing;
     let area_ratio = FRAC_PI_4 * (diameter / width).powi(2);
     equivalent_speed_ratio(thrust_coefficient, area_ratio)
@@ -125,11 +126,6 @@ fn objections(wind: &Wind, flow: &Flow) -> Vec<Objection> {
         object("turbulence_model", Fault::Refused(why), fix);
     }
     let in_atmosphere = wind.precursor.is_some();
-    if in_atmosphere && !flow.values.tables(refinement::NAME).is_empty() {
-        let why = "boxes of finer cells hold no temperature";
-        let fix = "leave out [[flow.refinement]], or take the planes of the precursor alone, wind.planes = \"…/planes.bts\", in air without temperature";
-        object("precursor", Fault::Refused(why), fix);
-    }
     if wind.veer != 0.0 && in_atmosphere {
         let why = "the atmosphere of wind.precursor brings its own veer";
         object("veer_deg_per_m", Fault::NoUse(why), "leave one of the two out");

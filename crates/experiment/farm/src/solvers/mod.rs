@@ -68,8 +68,9 @@ pub struct SolverKind {
     /// The tunnel in which they are, in a flow like the case's as it is laid out.
     pub tunnel: fn(&Plan, &Flow) -> Tunnel,
     /// Speed of unbounded air over that in such a tunnel (–) in which a rotor of a diameter (m) and a thrust
-    /// coefficient (–) in the tunnel is in the same state.
-    pub equivalent_speed: fn(&Tunnel, f64, f64) -> f64,
+    /// coefficient (–) in the tunnel is in the same state, as far as the case's own flow has none of the
+    /// tunnel's bounds: what the case lacks itself is for the check to find.
+    pub equivalent_speed: fn(&Tunnel, &Flow, f64, f64) -> f64,
     /// What of the case's wind and domain it cannot take.
     pub objections: fn(&Wind, &Flow) -> Vec<Objection>,
     /// What a reader of the numbers must know of a case in it, as it is laid out.
@@ -85,6 +86,8 @@ pub struct SolverKind {
     pub memory: fn(&Case, &Plan) -> u64,
     /// Keys that need less memory where they are lower, in words that follow “lower”.
     pub less_memory: &'static str,
+    /// What may carry a run whose air broke down, in words.
+    pub steadier: &'static str,
     /// The air at time zero.
     pub begin: fn(Start) -> Result<Air, SolverError>,
     /// The air about one rotor alone, in a steady wind, at time zero.

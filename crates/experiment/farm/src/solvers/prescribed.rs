@@ -25,7 +25,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     most_filaments: None,
     needs_self_check: false,
     tunnel: |plan, _| Tunnel::of_study(plan),
-    equivalent_speed: |_, _, _| 1.0,
+    equivalent_speed: |_, _, _, _| 1.0,
     objections: |_, _| Vec::new(),
     warnings: |_, _| Vec::new(),
     sound_speed: |_| None,
@@ -33,6 +33,7 @@ pub const PRESCRIBED: SolverKind = SolverKind {
     reach: |_, _| 0.0,
     memory: |_, _| 0,
     less_memory: "time.duration, for which turbulence is made",
+    steadier: "a shorter flow.step may carry it",
     begin,
     begin_alone,
     updates_alone: |_, _| 1.0,
@@ -84,13 +85,12 @@ pub(super) fn uniform_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
 
 pub(super) fn turbulence_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
     let file = wind.planes.is_some().then(|| no_file("flow.solver = \"turbulence\" makes its own"));
-    let event =
-        wind.event.is_some().then(|| no_event("flow.solver = \"turbulence\" is not deterministic"));
+    let event = wind.event.is_some().then(|| no_event("events are for wind without turbulence"));
     file.into_iter().chain(event).collect()
 }
 
 pub(super) fn planes_objections(wind: &Wind, _: &Flow) -> Vec<Objection> {
-    const AS_IT_IS: &str = "flow.solver = \"planes\" takes the wind as the file has it";
+    const AS_IT_IS: &str = "the wind is taken as the file has it";
     let no_use = |key, fix| Objection { key, fault: Fault::NoUse(AS_IT_IS), fix };
     let mut objections = Vec::new();
     if wind.planes.is_none() {

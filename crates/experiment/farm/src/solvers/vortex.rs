@@ -1,6 +1,7 @@
 //! `vortex`: lifting lines shed free vortices into the wind.
 
 mod remarks;
+mod shear;
 
 use super::prescribed::{planes_objections, turbulence_objections, uniform_objections};
 use super::{Alone, Objection, PRESCRIBED, SolverError, SolverKind, Start, WindSource};
@@ -12,7 +13,7 @@ use crate::wind;
 use basis::Vector3;
 use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Key, Values, above, from, key};
-use flow::inflow::{MeanProfile, PrescribedWind};
+use flow::inflow::{MeanProfile, Planes, PrescribedWind};
 use flow::vortex::{
     Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
 };
@@ -122,7 +123,7 @@ static KEYS: [Key; 15] = [
         Holds::Choice(&["carried", "left-out"]),
         "",
         Value("\"left-out\""),
-        "What the shear and veer of the mean wind do to wakes. `left-out`: wakes are carried by the wind less the difference of its mean at their height from that at their own hub's. `carried`: by the wind where they are, faster above than below; they then lean and rise by half a diameter in four, which wakes in air do not, where a rotor bends the vorticity of the shear. The mean is that of `wind.speed`, `wind.shear_exponent` or `wind.roughness_length`, and `wind.veer_deg_per_m`, also where the wind is read from a file.",
+        "What the shear and veer of the mean wind do to wakes. `left-out`: wakes are carried by the wind less the difference of its mean at their height from that at their own hub's. `carried`: by the wind where they are, faster above than below; they then lean and rise by half a diameter in four, which wakes in air do not, where a rotor bends the vorticity of the shear. The mean is that of `wind.speed`, `wind.shear_exponent` or `wind.roughness_length`, and `wind.veer_deg_per_m`; of wind from a file it is the file's own: that of each row of points of `wind.planes` over record and width, for which the file is read once more, and that of `wind.table` over the run.",
     ),
     key(
         "tree_degree",
@@ -168,6 +169,8 @@ pub static VORTEX: SolverKind = SolverKind {
     reach: |case, plan| beyond_last(&case.flow.values) * plan.diameter,
     memory: |case, plan| FreeWake::memory_of(&of_all(case, plan)),
     less_memory: "flow.wake_length_diameters, flow.wake_beyond_last_diameters, flow.near_wake_diameters, flow.far_wake_filaments or flow.steps_per_turn",
+    steadier: "a shorter flow.step (or a greater flow.steps_per_turn), wider cores (flow.core_widths, flow.core_growth, or flow.core_strain = \"none\", with which \
+               stretching does not thin them) or a finer far wake (flow.far_wake_filaments higher, flow.far_wake_steps lower) may carry it, and nothing does where the wind itself is faster than any",
     begin,
     begin_alone,
     ..PRESCRIBED
@@ -208,15 +211,7 @@ fn settings(case: &Case, plan: &Plan, n_blades: &[usize]) -> WakeSettings {
         n_blades: n_blades.to_vec(),
         n_nacelles: case.turbines.len(),
     };
-    let shear = match case.flow.values.word("wake_shear") {
-        "left-out" => MeanShear::LeftOut {
-            profile: wind::profile(case, plan),
-            hub_height: plan.hub_height,
-            veer: case.wind.veer,
-        },
-        _ => MeanShear::Carries,
-    };
-    WakeSettings { shown, shear, ..resolved.settings(&case.flow, &case.wind) }
+    WakeSettings { shown, ..resolved.settings(&case.flow, &case.wind) }
 }
 
 /// The same of all turbines of `case`, before they are known.
@@ -278,7 +273,7 @@ impl Resolved {
                 degree: count("tree_degree"),
                 opening: values.number("tree_opening"),
             },
-            // There is none in even wind, and `settings` knows that of a case.
+            // There is none in even wind, and `begin` knows that of a case.
             shear: MeanShear::Carries,
             ground: values.word("ground_effect") == "image",
             shown: Points::NONE,
@@ -305,12 +300,15 @@ impl Resolved {
 }
 
 fn begin(start: Start) -> Result<Air, SolverError> {
-    let Start { site, inflow, planes, progress } = start;
-    let n_blades: Vec<usize> = site.models.iter().map(|model| model.definition.n_blades).collect();
-    let settings = settings(site.case, site.plan, &n_blades);
+    let Start { site, inflow, mut planes, progress } = start;
     if site.case.wind_source() == WindSource::Planes && planes.is_none() {
         return Err(SolverError::NoPlanes { solver: VORTEX.name });
     }
+    let (case, plan) = (site.case, site.plan);
+    let n_blades: Vec<usize> = site.models.iter().map(|model| model.definition.n_blades).collect();
+    let of_file = planes.as_mut().map(|planes| &mut **planes as &mut dyn Planes);
+    let shear = shear::of(case, plan, &*inflow, of_file, progress)?;
+    let settings = WakeSettings { shear, ..settings(case, plan, &n_blades) };
     let wind = wind::prescribed(&site, inflow, planes, progress)?;
     Ok(Box::new(FreeWake::new(settings, wind)?))
 }
@@ -342,16 +340,20 @@ fn tunnel(plan: &Plan, flow: &Flow) -> Tunnel {
     Tunnel { downstream, settling, averaging: 0.5, ..Tunnel::of_study(plan) }
 }
 
-/// A wake that ends induces less at its rotor, which is then in the state of one in faster air.
+/// What the check's own wake, shorter than the case's, does to its rotor: of the case's own end nothing is
+/// taken off, so that the check finds what it does to power and thrust.
+fn with_an_end(tunnel: &Tunnel, flow: &Flow, _: f64, thrust_coefficient: f64) -> f64 {
+    let of_case = beyond_last(&flow.values);
+    in_faster_air(tunnel.downstream, thrust_coefficient)
+        / in_faster_air(of_case, thrust_coefficient)
+}
+
+/// A wake of `length` (diameters) induces less at its rotor than an endless one; the rotor is then in the
+/// state of one in faster air (speed over that of the wind, –).
 ///
 /// With s for its [share](flow::vortex::share_of_endless) of what an endless one induces, u = 1 − s a for the
 /// wind at the disc and C_T = 4 a (1 − a), momentum theory has the same u and the same thrust in the wind
 /// u + C_T/4u.
-fn with_an_end(tunnel: &Tunnel, _: f64, thrust_coefficient: f64) -> f64 {
-    in_faster_air(tunnel.downstream, thrust_coefficient)
-}
-
-/// The same behind which the wake is as long (diameters).
 fn in_faster_air(length: f64, thrust_coefficient: f64) -> f64 {
     let induction = 0.5 * (1.0 - (1.0 - thrust_coefficient.clamp(0.0, MOST_THRUST)).sqrt());
     let share = flow::vortex::share_of_endless(2.0 * length, induction);

@@ -35,6 +35,7 @@ pub use error::{CaseError, Problem, ProblemKind};
 pub use objection::objection;
 pub use precursor::{PrecursorFile, parse_precursor, read_precursor};
 pub use reference::{precursor_reference, precursor_schema, reference, schema};
+pub use solver::unused_flow_keys;
 pub(crate) use spelling::nearest;
 pub use write::write;
 

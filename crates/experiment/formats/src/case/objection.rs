@@ -3,6 +3,7 @@
 use super::CaseFile;
 use super::document::{self, Entry, Node, Value, find, named};
 use super::error::{CaseError, Problem, ProblemKind};
+use super::sources::Sources;
 use super::sweep;
 use std::ops::Range;
 
@@ -11,12 +12,22 @@ use std::ops::Range;
 /// as the file has.
 pub fn objection(file: &CaseFile, path: &[&str], message: String) -> CaseError {
     let name = file.path.display().to_string();
-    let (sources, document) = document::parse(&name, &file.text, &file.overrides);
-    let expanded = document.and_then(|entries| sweep::expand(entries, file.text.len(), &sources));
-    let tree = expanded.ok().and_then(|expanded| expanded.studies.into_iter().nth(file.study));
+    let (sources, tree) = tree_of(file, &name);
     let span = tree.and_then(|entries| place(&entries, path)).unwrap_or(0..0);
     let problem = Problem::new(&sources, span, ProblemKind::Unfit { message });
     CaseError::Invalid { name, problems: vec![problem] }
+}
+
+/// The tree of the study of `file`; none where its text is no case file.
+pub(super) fn entries_of(file: &CaseFile) -> Option<Vec<Entry>> {
+    tree_of(file, &file.path.display().to_string()).1
+}
+
+fn tree_of(file: &CaseFile, name: &str) -> (Sources, Option<Vec<Entry>>) {
+    let (sources, document) = document::parse(name, &file.text, &file.overrides);
+    let expanded = document.and_then(|entries| sweep::expand(entries, file.text.len(), &sources));
+    let tree = expanded.ok().and_then(|expanded| expanded.studies.into_iter().nth(file.study));
+    (sources, tree)
 }
 
 fn place(entries: &[Entry], path: &[&str]) -> Option<Range<usize>> {

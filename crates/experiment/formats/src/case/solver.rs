@@ -1,11 +1,14 @@
 //! `[flow]`: what moves the air, its own keys and those of all, read and written.
 
+use super::CaseFile;
 use super::document::{Value, find};
 use super::keys;
+use super::objection::entries_of;
 use super::section::Section;
 use super::values::{assignments, values_of};
 use basis::keys::Key;
 use farm::case::{Flow, Solver};
+use farm::solvers::{SOLVERS, SolverKind};
 use std::fmt::Write;
 
 /// The flow solver of the file `root`, with what its keys hold.
@@ -19,12 +22,7 @@ pub(super) fn flow_of(root: &Section) -> Flow {
     let place_of = |key: Option<&str>| section.span_of(key.unwrap_or("solver"));
     section.findings().object("flow", place_of, (solver.check)(&values));
     // What other solvers would use has to be right all the same: one file is read for several of them.
-    let is_others = |key: &&Key| {
-        let ours = solver.keys.iter().chain(&keys::FLOW_COMMON);
-        section.has(key.name)
-            && key.name != "solver"
-            && !ours.map(|k| k.name).any(|n| n == key.name)
-    };
+    let is_others = |key: &&Key| section.has(key.name) && !is_used(solver, key.name);
     let others: Vec<Key> = table.keys.iter().filter(is_others).copied().collect();
     values_of(&section, &others);
     let threads = section.optional_whole("threads");
@@ -34,6 +32,35 @@ pub(super) fn flow_of(root: &Section) -> Flow {
         step: section.optional_number("step"),
         threads: threads.and_then(|count| usize::try_from(count).ok()),
     }
+}
+
+/// Whether `solver` reads the key `name` of `[flow]`.
+fn is_used(solver: Solver, name: &str) -> bool {
+    name == "solver" || solver.keys.iter().chain(&keys::FLOW_COMMON).any(|key| key.name == name)
+}
+
+/// That `[flow]` of the case of `file` has keys which its solver does not read, but others do; none where
+/// there are no such keys. They are no error, so that one file can be run with several solvers.
+pub fn unused_flow_keys(file: &CaseFile) -> Option<String> {
+    let solver = file.case.flow.solver;
+    let entries = entries_of(file)?;
+    let Value::Table(flow) = &find(&entries, "flow")?.node.value else { return None };
+    let names = flow.iter().map(|entry| entry.key.as_str());
+    let unused: Vec<&str> = names.filter(|name| !is_used(solver, name)).collect();
+    let reads = |kind: &&&'static SolverKind| unused.iter().any(|name| is_used(Solver(kind), name));
+    let kinds = SOLVERS.all();
+    let readers: Vec<String> =
+        kinds.iter().filter(reads).map(|kind| format!("\"{}\"", kind.name)).collect();
+    let keys: Vec<String> = unused.iter().map(|name| format!("flow.{name}")).collect();
+    let (verb, them) = if keys.len() == 1 { ("has", "it") } else { ("have", "them") };
+    (!keys.is_empty()).then(|| {
+        format!(
+            "{} {verb} no effect with flow.solver = \"{}\", for {} to read; leave {them} out, or use that solver",
+            keys.join(", "),
+            solver.name,
+            readers.join(" and ")
+        )
+    })
 }
 
 /// The solver that the file `root` names; the one that holds without a choice where it names none that is

@@ -220,17 +220,25 @@ fn event_of_kind(name: &str, section: &Section, speed: f64) -> WindEvent {
             rise: number("rise"),
             change: turn(),
         },
-        "extreme-shear" => {
-            return WindEvent::ExtremeShear {
-                start: number("start"),
-                duration: number("duration"),
-                vertical: number("vertical"),
-                horizontal: number("horizontal"),
-            };
-        }
+        "extreme-shear" => return extreme_shear_of(section),
         _ => return WindEvent::RotatingDisk(disk_of(section)),
     };
     WindEvent::Everywhere(change)
+}
+
+/// The shear that comes and goes, as `section` has it; notes where there is none.
+fn extreme_shear_of(section: &Section) -> WindEvent {
+    let number = |key: &str| section.number(key);
+    let (vertical, horizontal) = (number("vertical"), number("horizontal"));
+    if vertical == 0.0 && horizontal == 0.0 {
+        let why = "neither `vertical` nor `horizontal` says how much the wind shears".to_owned();
+        let kind = ProblemKind::NoUse { key: section.key_path("kind"), why };
+        let fix =
+            "give one of them or both, in m/s one radius from the hub, or leave the event out";
+        section.findings().note(section.span_of("kind"), kind, Some(fix.into()));
+    }
+    let (start, duration) = (number("start"), number("duration"));
+    WindEvent::ExtremeShear { start, duration, vertical, horizontal }
 }
 
 /// The disk that circles, as `section` has it.

@@ -34,7 +34,8 @@ fn wind_of_case(text: &str) -> DeterministicWind {
     let case = parse("windy.toml", text, &[]);
     let case = case.unwrap_or_else(|error| panic!("{}", error.to_lines()));
     assert_eq!(parse("again", &write(&case), &[]).unwrap(), case, "{text}");
-    let footprint = Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0 };
+    let footprint =
+        Footprint { diameter: DIAMETER, hub_height: HUB, tip_speed: 80.0, rated_tip_speed: 80.0 };
     let plan = plan(&case, &BTreeMap::from([("m".to_owned(), footprint)])).unwrap();
     let wind = deterministic(&case, &plan);
     wind.check().unwrap();
@@ -174,6 +175,11 @@ fn what_cannot_be_is_reported_with_its_line() {
             "windy.toml:6: `wind.event.rise` = -3 is out of range: rise >= -2.5000 m/s for 4 steps down to calm",
         ),
         (
+            "event = { kind = \"extreme-shear\", start = 3 }",
+            "vortex",
+            "windy.toml:6: `wind.event.kind` has no effect here: neither `vertical` nor `horizontal` says how much the wind shears; give one of them or both",
+        ),
+        (
             "roughness_length = 0.06",
             "uniform",
             "windy.toml:5: `wind.shear_exponent` has no effect here: the profile is logarithmic with wind.roughness_length; leave one of the two out",
@@ -181,14 +187,14 @@ fn what_cannot_be_is_reported_with_its_line() {
         (
             "roughness_length = 0.06",
             "planes",
-            "windy.toml:6: `wind.roughness_length` has no effect here: flow.solver = \"planes\" takes the wind as the file has it",
+            "windy.toml:6: `wind.roughness_length` has no effect here: the wind is taken as the file has it",
         ),
         ("roughness_length = 0", "uniform", "0 < roughness_length <= 5 m"),
         ("veer_deg_per_m = 5", "uniform", "did you mean 0.05 deg/m? 5 deg per 100 m would be that"),
         (
             "veer_deg_per_m = 0.05",
             "planes",
-            "windy.toml:6: `wind.veer_deg_per_m` has no effect here: flow.solver = \"planes\" takes the wind as the file has it; leave it out",
+            "windy.toml:6: `wind.veer_deg_per_m` has no effect here: the wind is taken as the file has it; leave it out",
         ),
         (
             step,
@@ -232,6 +238,13 @@ fn what_cannot_be_is_reported_with_its_line() {
             message.contains("where --set gives one, the other must go from the file"),
             "{message}"
         );
+    }
+    // Free wakes take the wind that changes in time, as what it is prescribed by.
+    for keys in
+        [step, "table = \"u.csv\"", "event = { kind = \"extreme-shear\", start = 3, vertical = 2 }"]
+    {
+        let text = text(keys).replace("\"uniform\"", "\"vortex\"");
+        assert!(parse("windy.toml", &text, &[]).is_ok(), "{keys}");
     }
     let veering = |flow: &str| {
         let text = text("veer_deg_per_m = 0.05").replace("solver = \"uniform\"", flow);

@@ -3,6 +3,7 @@
 
 mod eddies;
 mod exchange;
+mod heat;
 mod state;
 mod worker;
 
@@ -11,6 +12,8 @@ use super::atmosphere::stratification::Stratification;
 use super::collision::SUBGRID_FACTOR;
 use super::engine::{Engine, Rows};
 use super::forces::ForceBlock;
+use super::heat_links::HeatExchange;
+use super::joint::Joint;
 use super::kernel::Kernel;
 use super::layout::{Edge, Layout, Parity};
 use super::links::Exchange;
@@ -85,6 +88,17 @@ impl Cpu {
     /// # Errors
     /// [`LatticeError::Memory`] when the system refuses that much.
     pub(crate) fn new(settings: &LatticeSettings) -> std::result::Result<Self, LatticeError> {
+        Self::joined(settings, &Joint::none(settings.n_cells[2] as f64 * settings.spacing))
+    }
+
+    /// The same for a box that lies in another as `joint` says.
+    ///
+    /// # Errors
+    /// As above.
+    pub(crate) fn joined(
+        settings: &LatticeSettings,
+        joint: &Joint,
+    ) -> std::result::Result<Self, LatticeError> {
         let scaling = settings.scaling();
         let backend = settings.backend.unwrap_or_else(Backend::detect);
         let kernel = Kernel::new(settings.stencil, backend);
@@ -96,7 +110,7 @@ impl Cpu {
         let memory = Memory::zeroed(layout.n_values()).ok_or_else(|| refused.clone())?;
         let stratification = match &settings.atmosphere {
             Some(atmosphere) => Some(
-                Stratification::new(atmosphere, settings, &layout, sides, levels)
+                Stratification::new(atmosphere, settings, joint, &layout, sides, levels)
                     .ok_or_else(|| refused.clone())?,
             ),
             None => None,
@@ -142,7 +156,7 @@ impl Cpu {
                     air.gather(share.rows.start, &heat.sums);
                 }
             }
-            air.follow();
+            air.follow(0..self.layout.n_cells[2]);
         }
     }
 
@@ -281,6 +295,10 @@ impl Engine for Cpu {
 
     fn exchange(&mut self) -> Option<&mut dyn Exchange> {
         Some(self)
+    }
+
+    fn heat(&mut self) -> Option<&mut dyn HeatExchange> {
+        self.stratification.is_some().then_some(self as &mut dyn HeatExchange)
     }
 
     fn write_state(&self, writer: &mut dyn Write) -> Result<()> {

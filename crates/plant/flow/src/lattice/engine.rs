@@ -6,6 +6,7 @@
 
 use super::atmosphere::AirRow;
 use super::forces::ForceBlock;
+use super::heat_links::HeatExchange;
 use super::links::Exchange;
 use super::probe::RowState;
 use crate::Inflow;
@@ -27,7 +28,7 @@ pub trait Engine: Send + Sync {
         false
     }
 
-    /// Makes a step, with the wind of `inflow` at the inlet.
+    /// Makes a step, with the wind of `inflow` at the inlet and beyond open sides.
     fn step(&mut self, inflow: &dyn Inflow);
 
     /// Steps made (–).
@@ -69,6 +70,11 @@ pub trait Engine: Send + Sync {
 
     /// Its populations for whoever exchanges them with another grid; none where they cannot be reached.
     fn exchange(&mut self) -> Option<&mut dyn Exchange> {
+        None
+    }
+
+    /// Its temperature likewise; none where the air has none, or it cannot be reached.
+    fn heat(&mut self) -> Option<&mut dyn HeatExchange> {
         None
     }
 

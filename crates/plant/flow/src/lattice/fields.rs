@@ -1,8 +1,10 @@
 //! Where temperature, what a step tells of the wind, and the viscosity of eddies lie in memory.
 //!
 //! One array holds field after field, each all cells, x fastest. The three values before a row and the three
-//! behind it are those of neighbours beyond its ends.
+//! behind it are those of neighbours beyond its ends. A box of finer cells has as many rows and levels beyond
+//! its sides where these lie in the air around, whose values are given there.
 
+use super::joint::Faces;
 use super::layout::{Edge, LINE, Layout};
 use super::memory::Memory;
 use super::values::{read_values, write_values};
@@ -53,44 +55,75 @@ pub(crate) struct Fields {
     memory: Memory,
     pub(super) n_cells: [usize; 3],
     row_stride: usize,
+    level_stride: usize,
     field_stride: usize,
+    /// From a field's start to its first cell.
+    first: usize,
     /// Numbers of the fields that there are.
     held: Range<usize>,
-    /// What lies beyond y, and below and above.
+    /// What lies beyond y, and below and above, where it is not the air around.
     pub(super) sides: Edge,
     pub(super) levels: [Edge; 2],
+    /// Which ends of each axis lie in the air of a grid around.
+    pub(super) joined: Faces,
 }
 
 impl Fields {
-    /// Those of air with `temperature` or without on the cells of `layout`, with `sides` beyond y and
-    /// `levels` below and above, all zero; `viscosity` says whether that of eddies is among them. None when
-    /// the system refuses the memory.
-    pub(super) fn new(
+    /// Those of air with temperature on the cells of `layout`, with `sides` beyond y and `levels` below and
+    /// above but for the ends that are `joined` to a grid around, all zero; `viscosity` says whether that of
+    /// eddies is among them. None when the system refuses the memory.
+    pub(super) fn warm(
         layout: &Layout,
         sides: Edge,
         levels: [Edge; 2],
-        temperature: bool,
+        joined: Faces,
         viscosity: bool,
     ) -> Option<Self> {
-        let first = if temperature { Field::Even } else { Field::Wind(0) };
         let end = if viscosity { Field::Viscosity } else { Field::Wind(2) };
-        Self::of(first.number()..end.number() + 1, layout, sides, levels)
+        Self::of(Field::Even.number()..end.number() + 1, layout, sides, levels, joined)
+    }
+
+    /// Those of air without temperature whose eddies have a viscosity, likewise.
+    pub(super) fn of_eddies(layout: &Layout, sides: Edge, levels: [Edge; 2]) -> Option<Self> {
+        let held = Field::Wind(0).number()..Field::Viscosity.number() + 1;
+        Self::of(held, layout, sides, levels, Faces::default())
     }
 
     /// No field at all.
     pub(super) fn none(layout: &Layout, sides: Edge, levels: [Edge; 2]) -> Option<Self> {
-        Self::of(0..0, layout, sides, levels)
+        Self::of(0..0, layout, sides, levels, Faces::default())
     }
 
     /// Those whose numbers are `held`.
-    fn of(held: Range<usize>, layout: &Layout, sides: Edge, levels: [Edge; 2]) -> Option<Self> {
+    fn of(
+        held: Range<usize>,
+        layout: &Layout,
+        sides: Edge,
+        levels: [Edge; 2],
+        joined: Faces,
+    ) -> Option<Self> {
         let n_cells = layout.n_cells;
         // Whole vectors, and a line for what lies beyond the ends: `REACH` values at its beginning belong to
         // this row, as many at its end to the next.
         let row_stride = n_cells[0].next_multiple_of(LINE) + LINE;
-        let field_stride = row_stride * layout.n_rows() + LINE;
+        let beyond = |axis: usize| joined[axis].map(|joined| if joined { REACH } else { 0 });
+        let [[before, behind], [below, above]] = [beyond(1), beyond(2)];
+        let level_stride = row_stride * (before + n_cells[1] + behind);
+        let field_stride = level_stride * (below + n_cells[2] + above) + LINE;
+        let first = LINE + below * level_stride + before * row_stride;
         let memory = Memory::zeroed(field_stride * held.len() + LINE)?;
-        Some(Self { memory, n_cells, row_stride, field_stride, held, sides, levels })
+        Some(Self {
+            memory,
+            n_cells,
+            row_stride,
+            level_stride,
+            field_stride,
+            first,
+            held,
+            sides,
+            levels,
+            joined,
+        })
     }
 
     /// Where temperature lies after `n_steps` steps.
@@ -103,13 +136,43 @@ impl Fields {
         self.held.contains(&field.number())
     }
 
-    /// First cell of row (`y`, `z`) of `field`, which is among them.
+    /// First cell of row (`y`, `z`) of `field`, which is among them. Rows and levels before the first have
+    /// the numbers before zero, which wrap around.
     #[inline(always)]
     pub(super) fn row(&self, field: Field, y: usize, z: usize) -> *mut f32 {
-        let field = field.number() - self.held.start;
-        let row = z * self.n_cells[1] + y;
+        let row = y.wrapping_mul(self.row_stride);
+        let place = z.wrapping_mul(self.level_stride).wrapping_add(row).wrapping_add(self.first);
         // Inside the array for rows of the box.
-        self.memory.start().wrapping_add(LINE + field * self.field_stride + row * self.row_stride)
+        self.memory.start().wrapping_add(self.start(field).wrapping_add(place))
+    }
+
+    /// Where `field`, which is among them, begins.
+    #[inline(always)]
+    pub(super) fn start(&self, field: Field) -> usize {
+        (field.number() - self.held.start) * self.field_stride
+    }
+
+    /// Place from a field's [start](Self::start) of `cell`, which may lie beyond an end where values are
+    /// given.
+    pub(super) fn place(&self, cell: [isize; 3]) -> usize {
+        let steps = cell.iter().zip(self.strides());
+        let offset = steps.map(|(place, stride)| place * stride as isize).sum();
+        self.first.wrapping_add_signed(offset)
+    }
+
+    /// From a cell to the next along x, y, z.
+    pub(super) fn strides(&self) -> [usize; 3] {
+        [1, self.row_stride, self.level_stride]
+    }
+
+    /// All values of all fields, while nobody writes them.
+    pub(super) fn values(&self) -> &[f32] {
+        self.memory.values()
+    }
+
+    /// Address of the first of all values, and their number.
+    pub(super) fn all(&mut self) -> (*mut f32, usize) {
+        (self.memory.start(), self.memory.values().len())
     }
 
     /// The cells of row (`y`, `z`) of `field`, while nobody writes it.
@@ -163,9 +226,14 @@ impl Fields {
         self.memory.bytes()
     }
 
-    /// The row of a level that lies `offset` rows along y from `y`.
+    /// The row of a level that lies `offset` rows along y from `y`; one in the air around beyond the last
+    /// and, wrapped around, before the first where the box is joined to it.
     #[inline(always)]
     pub(super) fn beside(&self, y: usize, offset: isize) -> usize {
+        let there = y.wrapping_add_signed(offset);
+        if there >= self.n_cells[1] && self.joined[1][usize::from(offset > 0)] {
+            return there;
+        }
         reach(y, offset, self.n_cells[1], self.sides)
     }
 
@@ -180,12 +248,15 @@ impl Fields {
         }
     }
 
-    /// The level that lies `offset` levels above `z`, where that is one of the box or comes back from its
-    /// other side.
+    /// The level that lies `offset` levels above `z`, where that is one of the box, comes back from its
+    /// other side or lies in the air around, as [`beside`](Self::beside).
     #[inline(always)]
     pub(super) fn above(&self, z: usize, offset: isize) -> Option<usize> {
         let n = self.n_cells[2];
         let place = z as isize + offset;
+        if (place < 0 || place >= n as isize) && self.joined[2][usize::from(offset > 0)] {
+            return Some(place as usize);
+        }
         let beyond = self.levels[usize::from(offset > 0)];
         match beyond {
             Edge::Periodic => Some(reach(z, offset, n, beyond)),

@@ -33,20 +33,26 @@
 mod boxes;
 mod coupling;
 mod fields;
+mod halo;
+mod heat;
 mod paths;
 mod steps;
 #[cfg(test)]
 mod tests;
 
 use super::cell_box::CellBox;
+use super::heat_links::HeatExchange;
+use super::joint::Joint;
 use super::links::Exchange;
 use super::settings::LatticeSettings;
 use super::solver::{Lattice, steps_in};
 use crate::{FlowError, FlowSolver, Inflow};
 use basis::{PointForce, Vector3};
 use boxes::Beyond;
-pub use boxes::{MARGIN, Refinement, RefinementError, check};
+pub use boxes::{MARGIN, Refinement, RefinementError, WARM_MARGIN, check};
 use coupling::Coupling;
+use halo::Place;
+use heat::HeatCoupling;
 use paths::Paths;
 use std::io::{Error, ErrorKind, Read, Result as IoResult, Write};
 use std::sync::Arc;
@@ -83,6 +89,8 @@ struct Inner {
     covered: CellBox,
     beyond: Beyond,
     coupling: Coupling,
+    /// That of temperature, where the air has one.
+    heat: Option<HeatCoupling>,
     grid: Grid,
     /// Forces of the bodies in it.
     forces: Vec<PointForce>,
@@ -101,7 +109,8 @@ impl Refined {
     ) -> Result<Self, RefinementError> {
         boxes::check_air(&settings, boxes)?;
         let beyond = boxes::beyond(&settings);
-        let grid = Grid::new(settings, boxes, &beyond, &inflow)?;
+        let height = settings.spacing * settings.n_cells[2] as f64;
+        let grid = Grid::new(settings, &Joint::none(height), boxes, &beyond, &inflow)?;
         Ok(Self { span: 1 << grid.depth(), grid, n_steps: 0 })
     }
 
@@ -196,15 +205,17 @@ impl FlowSolver for Refined {
 impl Grid {
     fn new(
         settings: LatticeSettings,
+        joint: &Joint,
         boxes: &[Refinement],
         beyond: &Beyond,
         inflow: &Arc<dyn Inflow>,
     ) -> Result<Self, RefinementError> {
-        let mut lattice = Lattice::new(settings, Arc::clone(inflow))?;
-        boxes::check_apart(boxes, lattice.n_cells())?;
+        let margin = boxes::margin(settings.atmosphere.is_some());
+        let mut lattice = Lattice::joined(settings, joint, Arc::clone(inflow))?;
+        boxes::check_apart(boxes, lattice.n_cells(), margin)?;
         let boxes = boxes
             .iter()
-            .map(|one| Inner::new(one, &mut lattice, beyond, inflow))
+            .map(|one| Inner::new(one, &mut lattice, joint, beyond, inflow))
             .collect::<Result<_, _>>()?;
         Ok(Self { lattice, boxes, forces: Vec::new() })
     }
@@ -221,7 +232,10 @@ impl Grid {
     }
 
     fn memory(&self) -> u64 {
-        let boxes = self.boxes.iter().map(|one| one.coupling.memory() + one.grid.memory());
+        let boxes = self.boxes.iter().map(|one| {
+            let heat = one.heat.as_ref().map_or(0, HeatCoupling::memory);
+            one.coupling.memory() + heat + one.grid.memory()
+        });
         self.lattice.memory() + boxes.sum::<u64>()
     }
 
@@ -237,23 +251,40 @@ impl Grid {
 }
 
 impl Inner {
-    /// The box `one` in the grid `around`, which is at its start, and `beyond` which lies what is given.
+    /// The box `one` in the grid `around`, which is at its start, lies as `joint` says, and `beyond` which
+    /// lies what is given.
     fn new(
         one: &Refinement,
         around: &mut Lattice,
+        joint: &Joint,
         beyond: &Beyond,
         inflow: &Arc<dyn Inflow>,
     ) -> Result<Self, RefinementError> {
         let n_cells = around.n_cells();
-        one.check(n_cells, beyond)?;
+        let is_warm = around.settings().atmosphere.is_some();
+        one.check(n_cells, beyond, is_warm)?;
         let own = one.beyond(n_cells, beyond);
         let settings = one.settings(around.settings(), &own);
-        let mut grid = Grid::new(settings, &one.within, &own, inflow)?;
+        let faces = own.map(|ends| ends.map(|beyond| beyond.is_none()));
+        let place = Place { covered: one.covered(), n_cells, beyond: *beyond, faces };
+        let joint = Joint {
+            faces,
+            floor: joint.floor + one.first_cell[2] as f64 * around.settings().spacing,
+            targets: is_warm.then(|| place.targets(heat(around))),
+            ..*joint
+        };
+        let mut grid = Grid::new(settings, &joint, &one.within, &own, inflow)?;
+        let heat = is_warm.then(|| HeatCoupling::new(&place, around, &mut grid.lattice));
         let around = exchange(around);
         let paths = Paths::new(one.covered(), n_cells, beyond, around.directions());
         let coupling = Coupling::new(paths, around, exchange(&mut grid.lattice));
-        Ok(Self { covered: one.covered(), beyond: own, coupling, grid, forces: Vec::new() })
+        Ok(Self { covered: one.covered(), beyond: own, coupling, heat, grid, forces: Vec::new() })
     }
+}
+
+/// The temperature of `lattice`, whose air has one.
+fn heat(lattice: &mut Lattice) -> &mut dyn HeatExchange {
+    lattice.engine.heat().expect("the engine on the processor exchanges temperature")
 }
 
 /// The populations of `lattice`.

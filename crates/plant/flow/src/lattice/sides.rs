@@ -34,8 +34,8 @@ pub(crate) struct OpenSides {
     means: [Vec<[f32; 2]>; 2],
     /// Temperature likewise, in an atmosphere.
     heat: Option<SideHeat>,
-    /// Density less one, and speed out of the box.
-    halo: [Vec<f32>; 2],
+    /// Density less one.
+    excess: Vec<f32>,
     times: Times,
     /// Weight of the later of the two times in the present step (–).
     weight: f32,
@@ -70,8 +70,8 @@ pub(crate) struct Beside {
     pub(crate) around: [[*const f32; 3]; 2],
     /// Weight of the later one (–).
     pub(crate) weight: f32,
-    /// Density less one, and speed out of the box.
-    pub(crate) halo: [*mut f32; 2],
+    /// Density less one.
+    pub(crate) excess: *mut f32,
     /// How far the inflow enters there: 1 where it does, 0 where air leaves.
     pub(crate) share: f32,
     /// Sense of y out of the box: 1 or −1.
@@ -109,7 +109,7 @@ impl OpenSides {
             around: [plane(), plane()],
             means: [vec![[0.0; 2]; rows.len()], vec![[0.0; 2]; rows.len()]],
             heat,
-            halo: [column(), column()],
+            excess: column(),
             times: Times::before_all(),
             weight: 0.0,
             positions: vec![Vector3::ZERO; n_cells + 2],
@@ -119,19 +119,11 @@ impl OpenSides {
         }
     }
 
-    /// On return the air beyond the sides moves as `inflow` does at time zero.
+    /// On return the air beyond the sides is undisturbed, with the wind of `inflow` at time zero.
     pub(crate) fn start(&mut self, inflow: &dyn Inflow, scaling: &Scaling) {
         self.times = Times::before_all();
         self.ask(0, inflow, scaling, 1);
-        let [excess, speed] = &mut self.halo;
-        excess.fill(0.0);
-        for (number, row) in self.rows.iter().enumerate() {
-            let range = number * self.stride..(number + 1) * self.stride;
-            let across = &self.around[1][1][range.clone()];
-            for (speed, across) in speed[range].iter_mut().zip(across) {
-                *speed = f32::from(row.outward) * across;
-            }
-        }
+        self.excess.fill(0.0);
     }
 
     /// On return they hold the wind of `inflow` at step number `step`.
@@ -215,7 +207,7 @@ impl OpenSides {
             share: self.share(number),
             outward: row.outward,
             corners: self.corners(),
-            halo: self.halo.each_mut().map(|column| column[start..].as_mut_ptr()),
+            excess: self.excess[start..].as_mut_ptr(),
         })
     }
 
@@ -239,7 +231,8 @@ impl OpenSides {
     /// Writes what time has changed, row by row.
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
         let warm = self.heat.iter().flat_map(|heat| &heat.around);
-        let columns = || self.halo.iter().chain(self.around.iter().flatten()).chain(warm.clone());
+        let wind = || self.around.iter().flatten().chain(warm.clone());
+        let columns = || [&self.excess].into_iter().chain(wind());
         (0..self.rows.len()).try_for_each(|number| {
             for column in columns() {
                 for range in self.kept(number) {
@@ -261,8 +254,8 @@ impl OpenSides {
         for number in 0..self.rows.len() {
             let kept = self.kept(number);
             let warm = self.heat.iter_mut().flat_map(|heat| &mut heat.around);
-            let wind = self.halo.iter_mut().chain(self.around.iter_mut().flatten());
-            for column in wind.chain(warm) {
+            let wind = self.around.iter_mut().flatten().chain(warm);
+            for column in [&mut self.excess].into_iter().chain(wind) {
                 for range in kept.clone() {
                     read_values(reader, bytes, &mut column[range])?;
                 }
@@ -287,7 +280,7 @@ impl OpenSides {
 
     /// Memory that they hold (bytes).
     pub(crate) fn bytes(&self) -> usize {
-        let n_columns = 8 + if self.heat.is_some() { 2 } else { 0 };
+        let n_columns = 7 + if self.heat.is_some() { 2 } else { 0 };
         let room = 2 * size_of::<Vector3>() + size_of::<f64>();
         n_columns * self.rows.len() * self.stride * size_of::<f32>()
             + self.rows.len() * (size_of::<SideRow>() + 2 * size_of::<[f32; 2]>())

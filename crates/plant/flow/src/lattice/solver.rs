@@ -2,6 +2,7 @@
 
 use super::cpu::Cpu;
 use super::engine::Engine;
+use super::joint::Joint;
 use super::probe::RowState;
 use super::scaling::Scaling;
 use super::settings::{LatticeError, LatticeSettings};
@@ -39,6 +40,20 @@ impl Lattice {
     pub fn new(settings: LatticeSettings, inflow: Arc<dyn Inflow>) -> Result<Self, LatticeError> {
         settings.check()?;
         let engine = Box::new(Cpu::new(&settings)?);
+        Self::on(engine, settings, inflow)
+    }
+
+    /// The same of a box that lies in another as `joint` says.
+    ///
+    /// # Errors
+    /// As above.
+    pub(super) fn joined(
+        settings: LatticeSettings,
+        joint: &Joint,
+        inflow: Arc<dyn Inflow>,
+    ) -> Result<Self, LatticeError> {
+        settings.check()?;
+        let engine = Box::new(Cpu::joined(&settings, joint)?);
         Self::on(engine, settings, inflow)
     }
 

@@ -2,10 +2,11 @@
 //!
 //! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last
 //! step (position, force, smearing length each); then what the engine writes, which on the processor is the
-//! outlet halo row by row, what the inflow told last row by row, where sides are open the same beyond them,
-//! the filtered wind at the ground, all populations; in an atmosphere also what the ground remembers, the
-//! mean temperatures of the levels, temperature now and a step before, and its last change; where a pass of
-//! its own finds the viscosity of eddies, that, and their diffusivity in an atmosphere.
+//! outlet halo row by row, what the inflow told last row by row, where sides are open the density of the halo
+//! beyond them and what the inflow told there, the filtered wind at the ground, all populations; in an
+//! atmosphere also what the ground remembers, the mean temperatures of the levels, temperature now and a step
+//! before, and its last change; where a pass of its own finds the viscosity of eddies, that, and their
+//! diffusivity in an atmosphere.
 //! Everything else follows from settings and inflow.
 
 use super::fields::N_KEPT;

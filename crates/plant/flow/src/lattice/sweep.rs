@@ -3,7 +3,8 @@
 //! # Safety
 //! The sweep writes through a raw pointer that all threads share. It is sound because each address belongs to
 //! exactly one cell in a step of either parity (a test of [`Layout`] shows it), a halo value to exactly one
-//! row's end, and each row to exactly one thread.
+//! row's end, and each row to exactly one thread. What comes in through an open side is put where the row
+//! beside it has what goes out.
 
 mod beyond;
 mod pushes;

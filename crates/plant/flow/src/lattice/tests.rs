@@ -10,6 +10,7 @@ mod invariants;
 mod open_sides;
 mod stencils;
 mod warm_inlet;
+mod warm_sides;
 
 use super::*;
 use crate::Inflow;

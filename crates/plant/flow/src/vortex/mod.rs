@@ -38,4 +38,4 @@ pub use harmonics::{HIGHEST_DEGREE, LOWEST_DEGREE};
 pub use segment::{Cores, Segment};
 pub use settings::{MeanShear, Points, WakeError, WakeSettings};
 pub use sheet::Resolution;
-pub use wake::FreeWake;
+pub use wake::{FARTHEST_TURN, FreeWake};

@@ -72,7 +72,7 @@ impl Rotor {
 
     /// Mean height of its elements (m): that of its hub, but for how blades bend.
     pub(super) fn height(&self) -> f64 {
-        self.stations.iter().map(|station| station.z).sum::<f64>() / self.stations.len() as f64
+        self.middle().z
     }
 
     /// Elements of each blade (–).
@@ -104,6 +104,24 @@ impl Rotor {
                 nodes[node + 1] += share * (middle + (1.0 - bound.inner_share) * along);
             }
         }
+    }
+
+    /// Middle of its elements (m): near the hub.
+    pub(super) fn middle(&self) -> Vector3 {
+        self.stations.iter().copied().sum::<Vector3>() / self.stations.len() as f64
+    }
+
+    /// Angle (rad) by which the blade turns in the step that turns most, from root to tip.
+    pub(super) fn turn(&self) -> f64 {
+        let way = |nodes: &[Vector3], first: usize, n: usize| nodes[first + n] - nodes[first];
+        let mut first = 0;
+        let of_blade = |n: &usize| {
+            let turned =
+                way(&self.nodes, first, *n).angle_between(way(&self.nodes_after, first, *n));
+            first += n + 1;
+            turned
+        };
+        self.n_elements.iter().map(of_blade).fold(0.0, f64::max)
     }
 
     /// From now on its elements stand where they are at the end of the step.

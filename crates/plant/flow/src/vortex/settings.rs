@@ -4,13 +4,14 @@ use super::body::BodyWakes;
 use super::field::Accuracy;
 use super::segment::Cores;
 use super::sheet::{Resolution, Sheet};
-use crate::inflow::MeanProfile;
 use crate::inflow::profile::veered;
+use crate::inflow::{MeanColumn, MeanProfile};
 use basis::Vector3;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Settings of a free wake.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WakeSettings {
     /// Step (s), the only one that it is advanced by.
     pub interval: f64,
@@ -47,7 +48,7 @@ pub struct WakeSettings {
 /// In air the vorticity of the shear itself holds against that, for the rotor bends and stretches it; here
 /// the wind's own vorticity is not bent, so that wakes in sheared wind rise. See the theory page, "Free
 /// vortices".
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum MeanShear {
     /// They carry wakes as all of the wind does.
     Carries,
@@ -61,14 +62,21 @@ pub enum MeanShear {
         /// Veer (rad/m), see [`DeterministicWind`](crate::inflow::DeterministicWind).
         veer: f64,
     },
+    /// They do not, likewise, with the mean wind of a record of its own.
+    LeftOutOf(Arc<MeanColumn>),
 }
 
 impl MeanShear {
     /// The mean wind at `height` (m), of which wakes are carried by its value at their own hubs (m/s, farm
     /// frame); none where it carries them as it is.
     pub(super) fn left_out(&self, height: f64) -> Vector3 {
-        let Self::LeftOut { profile, hub_height, veer } = self else { return Vector3::ZERO };
-        let [x, y] = veered(profile.speed(height), *veer, height - hub_height);
+        let [x, y] = match self {
+            Self::Carries => [0.0; 2],
+            Self::LeftOut { profile, hub_height, veer } => {
+                veered(profile.speed(height), *veer, height - hub_height)
+            }
+            Self::LeftOutOf(column) => column.at(height).wind,
+        };
         Vector3::new(x, y, 0.0)
     }
 }

@@ -14,6 +14,8 @@ use crate::{FlowError, FlowSolver, WindField};
 use basis::{Answer, PointForce, Vector3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// Farthest that a rotor may turn in a step (rad): beyond it the wake is no helix.
+pub const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 /// Speed that no air has that these equations hold for (m/s): sound.
 const FASTEST: f64 = 340.0;
 /// Lowest that a node of a wake over ground comes (m).
@@ -168,6 +170,17 @@ impl FreeWake {
         is_new
     }
 
+    /// # Errors
+    /// [`FlowError::TurnedTooFar`] where a rotor turns too far in a step of `duration` (s) from now.
+    fn check_turns(&self, duration: f64) -> Result<(), FlowError> {
+        let farthest = self.rotors.iter().max_by(|a, b| a.turn().total_cmp(&b.turn()));
+        let Some(rotor) = farthest.filter(|rotor| rotor.turn() > FARTHEST_TURN) else {
+            return Ok(());
+        };
+        let (time, position) = (self.wind.time() + duration, rotor.middle());
+        Err(FlowError::TurnedTooFar { time, position, turn: rotor.turn(), most: FARTHEST_TURN })
+    }
+
     /// On return segments and field are those of the rings.
     pub(super) fn gather(&mut self, is_new: bool) {
         self.segments.clear();
@@ -219,11 +232,11 @@ impl FreeWake {
 
     /// On return `winds` is without what does not carry wakes.
     fn leave_shear_out(&mut self) {
-        let shear = self.settings.shear;
-        if shear == MeanShear::Carries {
+        let Self { settings, winds, nodes, sheets, rotors, bodies, .. } = self;
+        let shear = &settings.shear;
+        if *shear == MeanShear::Carries {
             return;
         }
-        let Self { winds, nodes, sheets, rotors, bodies, .. } = self;
         let of_sheets = sheets.iter().map(|sheet| {
             let n_nodes = sheet.far.positions.len() + sheet.near.positions.len();
             (n_nodes, rotors[sheet.owner[0]].height())
@@ -325,6 +338,7 @@ impl FlowSolver for FreeWake {
             return Err(FlowError::FractionalStep { duration, step: self.settings.interval });
         }
         let mut is_new = self.meet(forces);
+        self.check_turns(duration)?;
         for sheet in &mut self.sheets {
             let rotor = &self.rotors[sheet.owner[0]];
             let circulations = rotor.circulations_of(sheet.owner[1]);

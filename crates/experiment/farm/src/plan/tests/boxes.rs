@@ -83,6 +83,28 @@ fn a_box_within_a_box_halves_again() {
 }
 
 #[test]
+fn boxes_in_an_atmosphere_and_between_open_sides_keep_off() {
+    let row = [[0.0, 0.0], [5.0, 0.0]];
+    // A cell of 15 m more than in air without temperature.
+    let close = |upstream| boxed(&row, &[asked(&[], &[("upstream_diameters", upstream)])]);
+    let mut case = close(3.0 - 2.0 / 16.0);
+    assert!(plan(&case, &footprints()).is_ok());
+    case.wind.precursor = Some("layer".to_owned());
+    let words = error(&case).to_string();
+    assert!(words.contains("has room from -675 to"), "{words}");
+    assert!(words.contains("3 cells before its sides"), "{words}");
+    let mut case = close(3.0 - 3.0 / 16.0);
+    case.wind.precursor = Some("layer".to_owned());
+    assert!(plan(&case, &footprints()).is_ok());
+
+    let mut filled = boxed(&row, &[asked(&[], &[("width_diameters", 6.0)])]);
+    assert!(plan(&filled, &footprints()).is_ok());
+    filled.flow.values.set("sides", Value::Text("open".into()));
+    let words = error(&filled).to_string();
+    assert!(words.contains("along y") && words.contains("lower its width_diameters"), "{words}");
+}
+
+#[test]
 fn what_boxes_cannot_do_is_named_with_its_fix() {
     let row = [[0.0, 0.0], [5.0, 0.0]];
     let one = |keys: &[(&'static str, f64)]| boxed(&row, &[asked(&[], keys)]);
@@ -130,7 +152,7 @@ fn what_boxes_cannot_do_is_named_with_its_fix() {
 
     // The outer box of two that are alike leaves the inner one no room.
     let twice = error(&boxed(&row, &[around("T1"), around("T1")]));
-    assert!(twice.to_string().contains("in flow.refinement.0: two cells"), "{twice}");
+    assert!(twice.to_string().contains("in flow.refinement.0: 2 cells"), "{twice}");
     assert!(twice.to_string().contains("or raise flow.refinement.0.upstream_d"), "{twice}");
 
     let nested: Vec<Values> = (0..5)

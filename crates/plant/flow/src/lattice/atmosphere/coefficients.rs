@@ -1,6 +1,7 @@
 //! What a step needs to know of the atmosphere, in lattice units.
 
 use super::settings::{Atmosphere, Damping, Driving};
+use crate::lattice::joint::Joint;
 use crate::lattice::scaling::Scaling;
 use crate::lattice::settings::LatticeSettings;
 use basis::Vector3;
@@ -28,10 +29,20 @@ pub(crate) struct Coefficients {
 pub(crate) struct Level {
     /// Temperature that buoyancy starts from: the level's mean (K above the reference).
     pub(crate) mean: f32,
+    /// Temperature that fluxes count from: the same, but in a box of finer cells that of the level of the
+    /// grid around, so that what passes from one to the other is counted alike.
+    pub(crate) base: f32,
     /// Rate at which wind and temperature are damped (per step).
     pub(crate) damping: f32,
     /// Temperature that damping goes to (K above the reference).
     pub(crate) target: f32,
+}
+
+impl Level {
+    /// Buoyancy and fluxes count from `mean` from now on.
+    pub(crate) fn refer(&mut self, mean: f32) {
+        (self.mean, self.base) = (mean, mean);
+    }
 }
 
 impl Coefficients {
@@ -61,27 +72,30 @@ impl Coefficients {
     }
 }
 
-/// Levels of the box of `settings`, as at the start.
+/// Levels of the box of `settings`, which lies as `joint` says, as at the start.
 pub(crate) fn levels(
     atmosphere: &Atmosphere,
     settings: &LatticeSettings,
-    scaling: &Scaling,
+    joint: &Joint,
 ) -> Vec<Level> {
-    let n_levels = settings.n_cells[2];
-    let top = settings.spacing * n_levels as f64;
-    (0..n_levels)
+    let scaling = settings.scaling();
+    (0..settings.n_cells[2])
         .map(|level| {
-            let height = (level as f64 + 0.5) * settings.spacing;
-            let departure =
-                (atmosphere.temperature_at(height) - atmosphere.reference_temperature) as f32;
+            let height = joint.floor + (level as f64 + 0.5) * settings.spacing;
+            let departure = match &joint.targets {
+                Some(targets) => targets[level],
+                None => {
+                    (atmosphere.temperature_at(height) - atmosphere.reference_temperature) as f32
+                }
+            };
             let damping = match atmosphere.damping {
                 Some(Damping { from, rate }) if height > from => {
-                    let share = (height - from) / (top - from);
+                    let share = (height - from) / (joint.top - from);
                     rate * (std::f64::consts::FRAC_PI_2 * share).sin().powi(2) * scaling.interval()
                 }
                 _ => 0.0,
             };
-            Level { mean: departure, damping: damping as f32, target: departure }
+            Level { mean: departure, base: departure, damping: damping as f32, target: departure }
         })
         .collect()
 }

@@ -43,6 +43,9 @@ pub(crate) struct StratifiedRow<S> {
     viscosity: Option<*const f32>,
     n_cells: usize,
     periodic: bool,
+    /// Wind along x behind its last cell, where what lies beyond its ends is given: whole vectors of cells are
+    /// written, and it may be overwritten with them.
+    given: Option<f32>,
 }
 
 /// The slope of temperature upwards at a row.
@@ -100,6 +103,9 @@ impl Air for Stratified<'_> {
                 .then(|| fields.row(Field::Viscosity, y, z).cast_const()),
             n_cells: fields.n_cells[0],
             periodic: self.periodic,
+            // SAFETY: the row's own padding.
+            given: (fields.joined[0] != [false; 2])
+                .then(|| unsafe { *fields.row(Field::Wind(0), y, z).add(fields.n_cells[0]) }),
         }
     }
 }
@@ -132,9 +138,16 @@ impl<S: Simd> RowAir<S> for StratifiedRow<S> {
     #[inline(always)]
     unsafe fn close(&self) {
         let [u, v, w] = self.wind;
-        for row in [u, v, w, self.diffusivity] {
-            // SAFETY: the row's own padding.
-            unsafe { beyond(row, self.n_cells, 1, self.periodic) };
+        // SAFETY: the row's own padding.
+        unsafe {
+            if let Some(given) = self.given {
+                *u.add(self.n_cells) = given;
+                beyond(self.diffusivity, self.n_cells, 1, false);
+                return;
+            }
+            for row in [u, v, w, self.diffusivity] {
+                beyond(row, self.n_cells, 1, self.periodic);
+            }
         }
     }
 }

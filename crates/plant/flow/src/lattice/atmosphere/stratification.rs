@@ -7,6 +7,7 @@ use super::settings::{Atmosphere, Heating, Perturbation, Reference};
 use super::surface::{Surface, SurfaceMemory};
 use super::transport::{Ghosts, Transport, close_row, upstream};
 use crate::lattice::fields::{Field, Fields, KEPT};
+use crate::lattice::joint::{Faces, Joint};
 use crate::lattice::layout::{Edge, LINE, Layout};
 use crate::lattice::settings::{Ends, LatticeSettings};
 use crate::lattice::sides::OpenSides;
@@ -21,7 +22,7 @@ pub(crate) struct Stratification {
     /// Temperatures beyond open sides.
     beside: Option<Beside>,
     coefficients: Coefficients,
-    levels: Vec<Level>,
+    pub(in crate::lattice) levels: Vec<Level>,
     plates: Option<[f32; 2]>,
     periodic: bool,
     pub(crate) surface: Option<Surface>,
@@ -31,8 +32,10 @@ pub(crate) struct Stratification {
     perturbation: Option<Perturbation>,
     reference_temperature: f64,
     spacing: f64,
+    /// Height of its lower side above the ground (m).
+    floor: f64,
     /// Sum of the temperatures of every row after the last step.
-    sums: Vec<f32>,
+    pub(in crate::lattice) sums: Vec<f32>,
 }
 
 /// The temperature that the pass over unresolved eddies finds.
@@ -70,11 +73,12 @@ impl HeatShare {
 }
 
 impl Stratification {
-    /// That of `atmosphere` in the box of `settings` and `layout`, with `sides` beyond y and `beyond` below
-    /// and above; none when the system refuses the memory.
+    /// That of `atmosphere` in the box of `settings` and `layout`, which lies as `joint` says, with `sides`
+    /// beyond y and `beyond` below and above; none when the system refuses the memory.
     pub(crate) fn new(
         atmosphere: &Atmosphere,
         settings: &LatticeSettings,
+        joint: &Joint,
         layout: &Layout,
         sides: Edge,
         beyond: [Edge; 2],
@@ -88,10 +92,10 @@ impl Stratification {
             _ => None,
         };
         Some(Self {
-            fields: Fields::new(layout, sides, beyond, true, eddies)?,
+            fields: Fields::warm(layout, sides, beyond, joint.faces, eddies)?,
             beside: Beside::new(layout.n_cells, sides)?,
             coefficients: Coefficients::new(atmosphere, settings, &scaling),
-            levels: levels(atmosphere, settings, &scaling),
+            levels: levels(atmosphere, settings, joint),
             plates,
             periodic: settings.ends == Ends::Periodic,
             surface: Surface::new(atmosphere, settings, &scaling),
@@ -100,6 +104,7 @@ impl Stratification {
             perturbation: atmosphere.perturbation,
             reference_temperature: atmosphere.reference_temperature,
             spacing: settings.spacing,
+            floor: joint.floor,
             sums: vec![0.0; layout.n_rows()],
         })
     }
@@ -138,7 +143,12 @@ impl Stratification {
         }
     }
 
-    /// Its fields, to be cleared.
+    /// Its fields.
+    pub(in crate::lattice) fn fields(&self) -> &Fields {
+        &self.fields
+    }
+
+    /// Its fields, to be changed.
     pub(crate) fn fields_mut(&mut self) -> &mut Fields {
         &mut self.fields
     }
@@ -170,7 +180,7 @@ impl Stratification {
     pub(crate) fn fill(&self, row: usize, given: Option<&[f64]>, sum: &mut f32) {
         let [n, n_y, _] = self.fields.n_cells;
         let [y, z] = [row % n_y, row / n_y];
-        let height = (z as f64 + 0.5) * self.spacing;
+        let height = self.floor + (z as f64 + 0.5) * self.spacing;
         let place = self.fields.row(Fields::temperature(0), y, z);
         *sum = 0.0;
         for x in 0..n {
@@ -231,16 +241,27 @@ impl Stratification {
         self.sums[first..first + sums.len()].copy_from_slice(sums);
     }
 
-    /// Levels follow their means, once all sums are in, where buoyancy refers to them.
-    pub(crate) fn follow(&mut self) {
-        if self.reference == Reference::Start {
+    /// Closes row number `row`, whose temperatures after `n_steps` steps others have changed; gives their
+    /// sum.
+    pub(in crate::lattice) fn settle(&self, n_steps: u64, row: usize) -> f32 {
+        let n_y = self.fields.n_cells[1];
+        let [y, z] = [row % n_y, row / n_y];
+        self.close(Fields::temperature(n_steps), y, z);
+        self.temperature(n_steps, row).iter().sum()
+    }
+
+    /// The levels whose numbers are in `levels` follow their means, once all sums are in, where buoyancy refers
+    /// to them. Those of a box in the air of another grid follow that one's.
+    pub(crate) fn follow(&mut self, levels: Range<usize>) {
+        if self.reference == Reference::Start || self.fields.joined != Faces::default() {
             return;
         }
         let [n_x, n_y, _] = self.fields.n_cells;
         let share = 1.0 / (n_x * n_y) as f64;
-        for (level, sums) in self.levels.iter_mut().zip(self.sums.chunks(n_y)) {
+        let sums = self.sums.chunks(n_y).skip(levels.start);
+        for (level, sums) in self.levels[levels].iter_mut().zip(sums) {
             let sum: f64 = sums.iter().copied().map(f64::from).sum();
-            level.mean = (sum * share) as f32;
+            level.refer((sum * share) as f32);
         }
     }
 
@@ -256,7 +277,7 @@ impl Stratification {
         let mut means = vec![0.0; self.levels.len()];
         read_values(reader, bytes, &mut means)?;
         for (level, mean) in self.levels.iter_mut().zip(means) {
-            level.mean = mean;
+            level.refer(mean);
         }
         let [_, n_y, n_z] = self.fields.n_cells;
         for field in self.kept() {
@@ -275,8 +296,11 @@ impl Stratification {
         KEPT.into_iter().chain(of_eddies.into_iter().flatten())
     }
 
-    /// Gives what lies beyond the ends of row (`y`, `z`) of `field` its values.
+    /// Gives what lies beyond the ends of row (`y`, `z`) of `field` its values, where it is not given.
     fn close(&self, field: Field, y: usize, z: usize) {
+        if self.fields.joined[0] != [false; 2] {
+            return;
+        }
         let row = self.fields.row(field, y, z);
         // SAFETY: the padding of a row that nobody else writes.
         unsafe { close_row(row, self.fields.n_cells[0], self.periodic, self.levels[z].target) };

@@ -13,8 +13,9 @@ use super::beside::Beside;
 use super::coefficients::Level;
 use super::stratification::HeatShare;
 use crate::lattice::fields::{Field, Fields, REACH, beyond};
+use crate::lattice::heat_links::{Face, Given};
 use crate::lattice::layout::Edge;
-use crate::simd::{MAXIMUM_LANES, Simd};
+use crate::simd::{MAXIMUM_LANES, Portable, Simd};
 use std::ops::Range;
 
 /// What all rows of a step share.
@@ -57,7 +58,9 @@ pub(crate) unsafe fn rows<S: Simd>(
         unsafe {
             let row = Row::new(step, ghosts, [y, z], source);
             sums[number] = row.carry::<S>(n);
-            close_row(row.next, n, step.periodic, row.entering);
+            if step.fields.joined[0] == [false; 2] {
+                close_row(row.next, n, step.periodic, row.entering);
+            }
         }
     }
 }
@@ -72,15 +75,16 @@ impl Ghosts {
         Self([std::array::from_fn(row), std::array::from_fn(row)])
     }
 
-    /// On return they hold what lies beyond the ground and the top of row (`y`, `z`) where these are near: a
-    /// slope that goes on, or that to the plate.
+    /// On return they hold what lies beyond the ground and the top of row (`y`, `z`) where these are near and
+    /// it is not given: a slope that goes on, or that to the plate.
     fn fill(&mut self, step: &Transport<'_>, y: usize, z: usize) {
         let fields = step.fields;
         let n_z = fields.n_cells[2];
         let temperature = Fields::temperature(step.n_steps);
         let near = [z < REACH, z + REACH >= n_z];
         for (end, ghosts) in self.0.iter_mut().enumerate() {
-            if !near[end] || fields.levels[end] == Edge::Periodic {
+            let is_known = fields.levels[end] == Edge::Periodic || fields.joined[2][end];
+            if !near[end] || is_known {
                 continue;
             }
             let inside = |depth: usize| {
@@ -162,32 +166,44 @@ impl Row {
                 _ => at(field, y, fields.above(z, offset).unwrap_or(z)),
             })
         };
-        let edges = |closed, first, last| match closed {
-            true => [first, last].map(|at_edge| if at_edge { 0.0 } else { 1.0 }),
-            false => [1.0; 2],
+        // In the air around it is that of the last cell.
+        let diffusivity = |axis| {
+            let here = at(Field::Diffusivity, y, z);
+            let n = fields.n_cells[axis];
+            let [before, _, behind] = around(Field::Diffusivity, axis);
+            let place = [0, y, z][axis];
+            let given = [place == 0, place + 1 == n];
+            let [first, last] =
+                [0, 1].map(|end| axis > 0 && given[end] && fields.joined[axis][end]);
+            [if first { here } else { before }, here, if last { here } else { behind }]
+        };
+        let edges = |axis: usize, closed: bool, first, last| {
+            [(first, 0), (last, 1)].map(|(at_edge, end)| {
+                if closed && at_edge && !fields.joined[axis][end] { 0.0 } else { 1.0 }
+            })
         };
         let slips = !matches!(fields.sides, Edge::Periodic | Edge::Open);
         let bounded = fields.levels[0] != Edge::Periodic;
         let open = [
             [1.0; 2],
-            edges(slips, y == 0, y + 1 == fields.n_cells[1]),
-            edges(bounded, z == 0, z + 1 == n_z),
+            edges(1, slips, y == 0, y + 1 == fields.n_cells[1]),
+            edges(2, bounded, z == 0, z + 1 == n_z),
         ];
         let mut conducts = open;
         if step.plates.is_some() {
             conducts[2] = [1.0; 2];
         }
-        let Level { mean, damping, target } = step.levels[z];
+        let Level { base, damping, target, .. } = step.levels[z];
         Self {
             temperature,
             wind: [0, 1, 2].map(|axis| around(Field::Wind(axis), axis)),
-            diffusivity: [0, 1, 2].map(|axis| around(Field::Diffusivity, axis)),
+            diffusivity: [0, 1, 2].map(diffusivity),
             open,
             conducts,
             change: fields.row(Field::Change, y, z),
             next: fields.row(Fields::temperature(step.n_steps + 1), y, z),
             source,
-            base: mean,
+            base,
             damping: [damping, target],
             weights: if step.n_steps == 0 { [1.0, 0.0] } else { [1.5, -0.5] },
             entering: target,
@@ -309,6 +325,46 @@ fn through<S: Simd>(t: [S; 6], wind: S, base: S) -> S {
     let odd = S::splat(10.0).mul_add(d - c, S::splat(5.0).sub_from(e - b, f - a));
     let centre = share.mul_add(even, S::splat(0.0) - base);
     speed.sub_from(share * odd, wind * centre)
+}
+
+/// On return `fluxes` holds the flux through each of `faces` in a step that finds `temperature`, above those
+/// of `bases` that they name, as the rows beside them count it.
+pub(in crate::lattice) fn face_fluxes(
+    fields: &Fields,
+    temperature: Field,
+    faces: &[Face],
+    bases: &[f32],
+    fluxes: &mut [f32],
+) {
+    type S = Portable;
+    let all = fields.values();
+    let at = |field, place| all[fields.start(field) + place];
+    for (fluxes, faces) in fluxes.chunks_mut(S::LANES).zip(faces.chunks(S::LANES)) {
+        let mut known = [[0.0; MAXIMUM_LANES]; 9];
+        for (lane, face) in faces.iter().enumerate() {
+            let axis = usize::from(face.axis);
+            let stride = fields.strides()[axis];
+            let cell = |number| face.first + number * stride;
+            for (number, known) in known[..6].iter_mut().enumerate() {
+                known[lane] = at(temperature, cell(number));
+            }
+            let [before, behind] = [2, 3].map(cell);
+            let wind = Field::Wind(axis);
+            known[6][lane] = 0.5 * (at(wind, before) + at(wind, behind));
+            let [one, other] = match face.given {
+                Given::Neither => [before, behind],
+                Given::Before => [behind; 2],
+                Given::Behind => [before; 2],
+            };
+            known[7][lane] = 0.5 * (at(Field::Diffusivity, one) + at(Field::Diffusivity, other));
+            known[8][lane] = bases[face.base as usize];
+        }
+        // SAFETY: buffers of the widest vector.
+        let [a, b, c, d, e, f, wind, diffusivity, base] =
+            known.map(|values| unsafe { S::load(values.as_ptr()) });
+        let flux = diffusivity.mul_add(c - d, through([a, b, c, d, e, f], wind, base));
+        fluxes.copy_from_slice(&lanes(flux)[..fluxes.len()]);
+    }
 }
 
 /// The lanes of `value`.

@@ -26,7 +26,7 @@ impl Eddies {
         let Some(law) = EddyLaw::new(settings) else { return Some(None) };
         let fields = match settings.atmosphere {
             Some(_) => Fields::none(layout, sides, levels),
-            None => Fields::new(layout, sides, levels, false, true),
+            None => Fields::of_eddies(layout, sides, levels),
         };
         Some(Some(Self { law, fields: fields? }))
     }

@@ -1,8 +1,9 @@
-//! Populations of the engine on the processor, for whoever exchanges them.
+//! Populations of the engine on the processor, for whoever exchanges them, and how threads share that work.
 
 use super::Cpu;
 use crate::lattice::layout::Parity;
 use crate::lattice::links::{Exchange, Fill, Link, Way};
+use crate::pool::Pool;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -24,47 +25,65 @@ impl Exchange for Cpu {
     }
 
     fn read(&mut self, places: &[usize], values: &mut [f32]) {
-        let n = places.len().min(values.len());
-        let (air, n_threads) = (self.memory.values(), self.pool.n_threads());
-        let values = Values(values.as_mut_ptr());
-        self.pool.run(&|thread| {
-            let range = share(n, thread, n_threads);
-            // SAFETY: the ranges of the threads are parts of `values` that do not overlap.
-            let values = unsafe { values.part(range.clone()) };
-            for (value, place) in values.iter_mut().zip(&places[range]) {
-                *value = air[*place];
-            }
-        });
+        gather(&mut self.pool, self.memory.values(), places, values);
     }
 
     fn write(&mut self, places: &[usize], fill: &Fill<'_>) {
-        let n_threads = self.pool.n_threads();
         let n_values = self.memory.values().len();
-        let air = Values(self.memory.start());
-        self.pool.run(&|thread| {
-            let mut room = [0.0; CHUNK];
-            let range = share(places.len(), thread, n_threads);
-            for (number, chunk) in places[range.clone()].chunks(CHUNK).enumerate() {
-                let room = &mut room[..chunk.len()];
-                fill(range.start + number * CHUNK, room);
-                for (value, place) in room.iter().zip(chunk) {
-                    assert!(*place < n_values, "a place of another engine");
-                    // SAFETY: a value of the array, which nobody else touches now; threads that were given
-                    // the same place both store it as a whole.
-                    unsafe { air.store(*place, *value) };
-                }
-            }
-        });
+        scatter(&mut self.pool, (self.memory.start(), n_values), places, fill);
     }
 }
 
+/// On return `values` begins with those of `all` at `places`.
+pub(super) fn gather(pool: &mut Pool, all: &[f32], places: &[usize], values: &mut [f32]) {
+    let n = places.len().min(values.len());
+    fill_up(pool, &mut values[..n], &|first, values| {
+        for (value, place) in values.iter_mut().zip(&places[first..]) {
+            *value = all[*place];
+        }
+    });
+}
+
+/// On return `values` are what `fill` gives.
+pub(super) fn fill_up(pool: &mut Pool, values: &mut [f32], fill: &Fill<'_>) {
+    let (n, n_threads) = (values.len(), pool.n_threads());
+    let values = Values(values.as_mut_ptr());
+    pool.run(&|thread| {
+        let range = share(n, thread, n_threads);
+        // SAFETY: the ranges of the threads are parts of `values` that do not overlap.
+        fill(range.start, unsafe { values.part(range) });
+    });
+}
+
+/// On return those of the values from an address on, as many as are told, that lie at `places` are what
+/// `fill` gives. They are nobody else's meanwhile.
+pub(super) fn scatter(pool: &mut Pool, all: (*mut f32, usize), places: &[usize], fill: &Fill<'_>) {
+    let n_threads = pool.n_threads();
+    let (start, n_values) = all;
+    let all = Values(start);
+    pool.run(&|thread| {
+        let mut room = [0.0; CHUNK];
+        let range = share(places.len(), thread, n_threads);
+        for (number, chunk) in places[range.clone()].chunks(CHUNK).enumerate() {
+            let room = &mut room[..chunk.len()];
+            fill(range.start + number * CHUNK, room);
+            for (value, place) in room.iter().zip(chunk) {
+                assert!(*place < n_values, "a place of another engine");
+                // SAFETY: a value of the array, which nobody else touches now; threads that were given the
+                // same place both store it as a whole.
+                unsafe { all.store(*place, *value) };
+            }
+        }
+    });
+}
+
 /// Part of `n` things that falls to `thread`.
-fn share(n: usize, thread: usize, n_threads: usize) -> Range<usize> {
+pub(super) fn share(n: usize, thread: usize, n_threads: usize) -> Range<usize> {
     thread * n / n_threads..(thread + 1) * n / n_threads
 }
 
 /// Values that threads share.
-struct Values(*mut f32);
+pub(super) struct Values(pub(super) *mut f32);
 
 // SAFETY: what threads do with it is unsafe and says why it may.
 unsafe impl Sync for Values {}
@@ -75,7 +94,7 @@ impl Values {
     /// # Safety
     /// They exist as long as the result, and nobody else touches them.
     #[expect(clippy::mut_from_ref, reason = "each thread takes another part")]
-    unsafe fn part(&self, range: Range<usize>) -> &mut [f32] {
+    pub(super) unsafe fn part(&self, range: Range<usize>) -> &mut [f32] {
         // SAFETY: the caller promises it.
         unsafe { std::slice::from_raw_parts_mut(self.0.add(range.start), range.len()) }
     }

@@ -1,6 +1,8 @@
 //! Which cells are refined, and the assumptions that are checked before they are.
 
+use crate::lattice::atmosphere::Heating;
 use crate::lattice::cell_box::CellBox;
+use crate::lattice::fields::REACH;
 use crate::lattice::layout::Edge;
 use crate::lattice::settings::{Ends, Ground, LatticeError, LatticeSettings, Sides, Stencil};
 use crate::lattice::subgrid::SubgridModel;
@@ -10,9 +12,15 @@ use thiserror::Error;
 /// Cells of the grid around a box between it and a side that it does not stand on, and between two boxes: one
 /// takes part in the exchange, the next one knows its slope.
 pub const MARGIN: usize = 2;
+/// The same in air with temperature, of which three cells before a face tell what passes it, and cells that a
+/// box covers at least along an axis along which it ends in the air.
+pub const WARM_MARGIN: usize = REACH;
 /// Memory of the exchange for each population that leaves a box through a face of a cell (bytes), about: as
 /// measured of a box of 64 × 32 × 32 cells on the ground.
 const BYTES_OF_LINK: u64 = 125;
+/// Memory of the exchange of temperature for each face of a cell of a box's sides (bytes), about, with what is
+/// given beyond it, as measured likewise.
+const BYTES_OF_WARM_FACE: u64 = 190;
 
 /// A box of cells of half the size, moved by steps of half the length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,7 +49,7 @@ pub enum RefinementError {
     },
     /// A box comes too close to a side of the grid around it.
     #[error(
-        "a refined box from cell {first} to cell {last} along {axis} comes too close to a side of the {n_cells} cells around it: let it end {MARGIN} cells before, or stand on a wall that air slips along, or fill a periodic axis"
+        "a refined box from cell {first} to cell {last} along {axis} comes too close to a side of the {n_cells} cells around it: let it end {margin} cells before, or stand on a wall that air slips along, or fill a periodic axis"
     )]
     TooClose {
         /// Axis.
@@ -52,21 +60,32 @@ pub enum RefinementError {
         last: usize,
         /// Cells around it along the axis (–).
         n_cells: usize,
+        /// Cells that are to lie between (–).
+        margin: usize,
+    },
+    /// A box is too thin for what passes its faces.
+    #[error(
+        "a refined box in air with temperature covers {n_cells} cells along {axis}, and needs {WARM_MARGIN}: make it thicker, or leave out the atmosphere"
+    )]
+    Thin {
+        /// Axis.
+        axis: &'static str,
+        /// Cells of the grid around that it covers (–).
+        n_cells: usize,
     },
     /// Two boxes overlap or nearly touch.
     #[error(
-        "refined boxes number {first} and {second} are less than {MARGIN} cells apart: join them, or move one"
+        "refined boxes number {first} and {second} are less than {margin} cells apart: join them, or move one"
     )]
     Overlap {
         /// Number of the first box among its neighbours, from zero.
         first: usize,
         /// Number of the second.
         second: usize,
+        /// Cells that are to lie between (–).
+        margin: usize,
     },
-    /// Temperature is not carried from grid to grid.
-    #[error("air with temperature cannot be refined: leave out the boxes, or the atmosphere")]
-    Atmosphere,
-    /// Nor is the wind of neighbours that a model of eddies needs.
+    /// The wind of neighbours that a model of eddies needs is not handed from grid to grid.
     #[error(
         "the subgrid model {} needs the wind of neighbours, which boxes of finer cells do not hand each other: take smagorinsky, or leave out the boxes", .0.word()
     )]
@@ -83,7 +102,12 @@ pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 /// [`RefinementError`] for the first that does not.
 pub fn check(settings: &LatticeSettings, boxes: &[Refinement]) -> Result<(), RefinementError> {
     check_air(settings, boxes)?;
-    check_in(settings.n_cells, &beyond(settings), boxes)
+    check_in(settings.n_cells, &beyond(settings), boxes, settings.atmosphere.is_some())
+}
+
+/// Cells between boxes and sides, and between boxes, in air with temperature (`is_warm`) or without.
+pub(super) fn margin(is_warm: bool) -> usize {
+    if is_warm { WARM_MARGIN } else { MARGIN }
 }
 
 /// Checks that the air of `settings` can be in boxes at all, if there are any.
@@ -93,9 +117,6 @@ pub(super) fn check_air(
 ) -> Result<(), RefinementError> {
     if boxes.is_empty() {
         return Ok(());
-    }
-    if settings.atmosphere.is_some() {
-        return Err(RefinementError::Atmosphere);
     }
     match settings.subgrid.model {
         model if model.needs_neighbours() => Err(RefinementError::Subgrid(model)),
@@ -107,11 +128,12 @@ fn check_in(
     n_cells: [usize; 3],
     beyond: &Beyond,
     boxes: &[Refinement],
+    is_warm: bool,
 ) -> Result<(), RefinementError> {
-    check_apart(boxes, n_cells)?;
+    check_apart(boxes, n_cells, margin(is_warm))?;
     boxes.iter().try_for_each(|one| {
-        one.check(n_cells, beyond)?;
-        check_in(one.fine_cells(), &one.beyond(n_cells, beyond), &one.within)
+        one.check(n_cells, beyond, is_warm)?;
+        check_in(one.fine_cells(), &one.beyond(n_cells, beyond), &one.within, is_warm)
     })
 }
 
@@ -149,16 +171,19 @@ impl Refinement {
         1 + self.within.iter().map(Self::depth).max().unwrap_or(0)
     }
 
-    /// Memory (bytes) of its exchange with the grid around it in populations of `stencil`, about: what it is
-    /// where they cross all six sides.
-    pub fn exchange_memory(&self, stencil: Stencil) -> u64 {
+    /// Memory (bytes) of its exchange, and of that of the boxes within it, with the grid around it in
+    /// populations of `stencil`, in air with temperature (`is_warm`) or without, about: what it is where they
+    /// cross all six sides.
+    pub fn exchange_memory(&self, stencil: Stencil, is_warm: bool) -> u64 {
         let [x, y, z] = self.fine_cells().map(|n| n as u64);
         // Directions that lead through a face.
         let n_links = match stencil {
             Stencil::D3Q19 => 5,
             Stencil::D3Q27 => 9,
         };
-        2 * (x * y + y * z + z * x) * n_links * BYTES_OF_LINK
+        let heat = if is_warm { BYTES_OF_WARM_FACE } else { 0 };
+        let within = self.within.iter().map(|one| one.exchange_memory(stencil, is_warm));
+        2 * (x * y + y * z + z * x) * (n_links * BYTES_OF_LINK + heat) + within.sum::<u64>()
     }
 
     /// The cells around it that it covers.
@@ -169,12 +194,15 @@ impl Refinement {
         }
     }
 
-    /// Checks its place among `n_cells` cells, `beyond` which lies what is given.
+    /// Checks its place among `n_cells` cells, `beyond` which lies what is given, in air with temperature
+    /// (`is_warm`) or without.
     pub(super) fn check(
         &self,
         n_cells: [usize; 3],
         beyond: &Beyond,
+        is_warm: bool,
     ) -> Result<(), RefinementError> {
+        let margin = margin(is_warm);
         let CellBox { low, high } = self.covered();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             if self.n_cells[axis] == 0 {
@@ -182,7 +210,7 @@ impl Refinement {
             }
             let n = n_cells[axis];
             let touches = [low[axis] == 0, high[axis] == n];
-            let apart = [low[axis] >= MARGIN, high[axis] + MARGIN <= n];
+            let apart = [low[axis] >= margin, high[axis] + margin <= n];
             let stands: [bool; 2] = std::array::from_fn(|side| match beyond[axis][side] {
                 // What a wall turns back would go other ways in long steps than in short ones.
                 None | Some(Edge::Hold | Edge::Open) => false,
@@ -196,7 +224,11 @@ impl Refinement {
                     first: low[axis],
                     last: high[axis].saturating_sub(1),
                     n_cells: n,
+                    margin,
                 });
+            }
+            if is_warm && stands != [true; 2] && self.n_cells[axis] < WARM_MARGIN {
+                return Err(RefinementError::Thin { axis: name, n_cells: self.n_cells[axis] });
             }
         }
         Ok(())
@@ -233,22 +265,31 @@ impl Refinement {
                 Some(_) => around.ground,
                 None => Ground::Slip,
             },
+            atmosphere: around.atmosphere.clone().map(|mut atmosphere| {
+                let of_ground =
+                    matches!(atmosphere.heating, Heating::Flux(_) | Heating::Ground { .. });
+                if of_ground && beyond[2][0].is_none() {
+                    atmosphere.heating = Heating::None;
+                }
+                atmosphere
+            }),
             ..around.clone()
         }
     }
 }
 
-/// Checks that `boxes` are apart from one another, in a grid of `n_cells` cells.
+/// Checks that `boxes` are `margin` cells apart from one another, in a grid of `n_cells` cells.
 pub(super) fn check_apart(
     boxes: &[Refinement],
     n_cells: [usize; 3],
+    margin: usize,
 ) -> Result<(), RefinementError> {
     for (second, one) in boxes.iter().enumerate() {
-        let around = one.covered().grown(MARGIN, n_cells);
+        let around = one.covered().grown(margin, n_cells);
         if let Some(first) =
             boxes[..second].iter().position(|other| other.covered().overlaps(&around))
         {
-            return Err(RefinementError::Overlap { first, second });
+            return Err(RefinementError::Overlap { first, second, margin });
         }
     }
     Ok(())

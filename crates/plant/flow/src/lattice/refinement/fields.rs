@@ -59,6 +59,14 @@ impl FieldSource for Refined {
 }
 
 impl Refined {
+    /// Potential temperature (K) at each of `positions` (m) into `temperatures`, of the same length: trilinear
+    /// between cell centres of the finest box that holds them all around a position; false, and nothing is
+    /// written, where the air has none.
+    pub fn sample_temperature(&self, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
+        let mut one_by_one = positions.iter().zip(temperatures);
+        one_by_one.all(|(position, temperature)| self.grid.temperature(*position, temperature))
+    }
+
     /// On return `plane`, which the base has filled, shows the boxes and tells the time.
     fn show_boxes(&self, plane: &mut Plane) {
         self.grid.overlay(plane);
@@ -94,6 +102,15 @@ impl Grid {
                 None => self.sample_own(positions, velocities),
             }
             start += n;
+        }
+    }
+
+    /// On return `temperature` is that at `position`, where the air has one. Cells under boxes have the means
+    /// of those in them.
+    fn temperature(&self, position: Vector3, temperature: &mut f64) -> bool {
+        match self.boxes.iter().find(|one| one.holds(position)) {
+            Some(one) => one.grid.temperature(position, temperature),
+            None => self.lattice.sample_temperature(&[position], std::slice::from_mut(temperature)),
         }
     }
 

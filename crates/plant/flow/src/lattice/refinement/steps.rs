@@ -42,16 +42,26 @@ impl Grid {
         }
         for one in &mut self.boxes {
             let short = span / 2;
+            let step = (n_steps % span / short) as usize;
+            if n_steps.is_multiple_of(short)
+                && let Some(heat) = &mut one.heat
+            {
+                heat.surround(&mut self.lattice, &mut one.grid.lattice, step);
+            }
             one.grid.advance(n_steps, short);
+            if n_steps.is_multiple_of(short)
+                && let Some(heat) = &mut one.heat
+            {
+                // What its step has found is no part of its state, and the steps of boxes in it may follow
+                // after a pause.
+                heat.cross(&mut one.grid.lattice);
+            }
             if (n_steps + 1).is_multiple_of(short) {
-                let step = (n_steps % span / short) as usize;
                 one.coupling.cross(exchange(&mut one.grid.lattice), step);
             }
         }
         if (n_steps + 1).is_multiple_of(span) {
-            let made = self.lattice.n_steps();
-            let around = exchange(&mut self.lattice);
-            self.boxes.iter_mut().for_each(|one| one.coupling.give(around, made));
+            self.end();
         }
     }
 
@@ -60,11 +70,29 @@ impl Grid {
         let made = self.lattice.n_steps();
         let around = exchange(&mut self.lattice);
         self.boxes.iter_mut().for_each(|one| one.coupling.keep(around, made));
+        self.boxes.iter_mut().filter_map(|one| one.heat.as_mut()).for_each(|heat| {
+            heat.keep(&mut self.lattice);
+        });
         self.lattice.hold(&self.forces);
         self.lattice.step();
         let around = exchange(&mut self.lattice);
         self.boxes.iter_mut().for_each(|one| one.coupling.take(around, made + 1));
         self.boxes.iter_mut().for_each(|one| one.coupling.lend(around, made + 1));
+        self.boxes.iter_mut().filter_map(|one| one.heat.as_mut()).for_each(|heat| {
+            heat.take(&mut self.lattice);
+        });
+    }
+
+    /// Takes up what the boxes have made of its step.
+    fn end(&mut self) {
+        let made = self.lattice.n_steps();
+        let around = exchange(&mut self.lattice);
+        self.boxes.iter_mut().for_each(|one| one.coupling.give(around, made));
+        for one in &mut self.boxes {
+            if let Some(heat) = &mut one.heat {
+                heat.give(&mut self.lattice, &one.grid.lattice);
+            }
+        }
     }
 
     /// Looks at part of each grid that has just made a step.
@@ -85,6 +113,7 @@ impl Grid {
         self.lattice.write_state(writer)?;
         self.boxes.iter_mut().try_for_each(|one| {
             one.coupling.write_state(writer)?;
+            one.heat.as_ref().map_or(Ok(()), |heat| heat.write_state(writer))?;
             one.grid.write_state(writer)
         })
     }
@@ -93,6 +122,7 @@ impl Grid {
         self.lattice.read_state(reader)?;
         self.boxes.iter_mut().try_for_each(|one| {
             one.coupling.read_state(reader)?;
+            one.heat.as_mut().map_or(Ok(()), |heat| heat.read_state(reader))?;
             one.grid.read_state(reader)
         })
     }

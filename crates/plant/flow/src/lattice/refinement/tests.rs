@@ -4,6 +4,7 @@ mod exactness;
 mod fields;
 mod ground;
 mod wake;
+mod warm;
 mod waves;
 
 use super::boxes::beyond;

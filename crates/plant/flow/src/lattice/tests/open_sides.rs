@@ -1,15 +1,14 @@
 //! Wind that blows through the sides of a box.
 
 use super::*;
-use crate::FlowSolver;
-use crate::WindField;
-use crate::lattice::atmosphere::{AirRow, Atmosphere, Heating};
-use std::f64::consts::TAU;
+use crate::lattice::atmosphere::{AirRow, Atmosphere};
+use crate::lattice::refinement::{Refined, Refinement, RefinementError};
+use crate::{FlowSolver, WindField};
 
-const SPEED: f64 = 0.1;
+pub(super) const SPEED: f64 = 0.1;
 
 /// A box of `n_cells` with open sides between inlet and outlet, in lattice units.
-fn settings(n_cells: [usize; 3]) -> LatticeSettings {
+pub(super) fn settings(n_cells: [usize; 3]) -> LatticeSettings {
     let mut settings = periodic_box(n_cells, 1e-6);
     (settings.ends, settings.sides) = (Ends::InletOutlet, Sides::Open);
     settings.subgrid = Subgrid::smagorinsky(DEFAULT_SMAGORINSKY);
@@ -17,7 +16,7 @@ fn settings(n_cells: [usize; 3]) -> LatticeSettings {
 }
 
 /// Wind of `SPEED` at `angle` (°) to the x axis.
-fn aslant(angle: f64) -> Vector3 {
+pub(super) fn aslant(angle: f64) -> Vector3 {
     let (sine, cosine) = angle.to_radians().sin_cos();
     SPEED * Vector3::new(cosine, sine, 0.0)
 }
@@ -55,6 +54,7 @@ fn a_wind_aslant_stays_one() {
             // Five times through the box.
             air.advance(2000.0, &[]).unwrap();
             let worst = departure(&air, [0; 3], n_cells, |_| aslant(angle));
+            println!("aslant {stencil:?} {angle}: {worst:e}");
             assert!(worst < 1e-5 * SPEED, "{stencil:?} {angle}: off by {worst}");
         }
     }
@@ -73,6 +73,7 @@ fn a_wind_that_veers_keeps_its_directions_up_to_the_sides() {
     let mut air = lattice(settings, |_, x| veering(x.z));
     air.advance(2000.0, &[]).unwrap();
     let worst = departure(&air, [0; 3], n_cells, |x| veering(x.z));
+    println!("veering {worst:e}");
     // The outlet has to stop what friction between the layers changes: less than of the wind's shear in a
     // cell.
     assert!(worst < 0.01 * SPEED, "off by {worst}");
@@ -102,8 +103,10 @@ fn mass_stays_where_wind_veers_and_gusts() {
         mean
     };
     let [early, late] = [mean(), mean()];
-    // A hundredth of what the wind's own pressure head would add: 4.7e-5.
-    assert!(early.abs() < 0.01 * 1.5 * SPEED.powi(2), "{early}");
+    println!("mass {early:e} {late:e}");
+    // No pressure is larger than that of stopping all that blows through the sides.
+    let stopped = 1.5 * veering(0.0).y.powi(2);
+    assert!(early.abs() < stopped, "{early} of {stopped}");
     assert!((late - early).abs() < 1e-6, "mass drifts from {early} to {late}");
 }
 
@@ -161,29 +164,33 @@ fn a_vortex_leaves_through_a_side() {
         wrong = wrong.max(now);
         there = sum(air, &|_| aslant(15.0)) / before;
     }
+    println!("vortex {wrong:e} wrong, {there:e} left");
     assert!(there < 1e-3, "{there} is left");
-    // 27 % of its energy while its middle passes, for the inflow's wind is held a little, and the wind along
-    // the side has no slope there: a side whose speed has no slope, as a wall, has more than half
-    // of it wrong.
-    assert!(wrong < 0.35, "{wrong} is wrong at the worst");
+    assert!(wrong < 0.05, "{wrong} is wrong at the worst");
 }
 
 #[test]
 fn a_vortex_enters_through_a_side() {
-    // It passes the side at x = 34 and is in the middle of the box in the end.
-    let wind = vortex(-45.0, -21.0);
-    let mut air = lattice(settings([160, 56, 1]), vortex(-45.0, -21.0));
+    // It passes the side at x = 34 after 818 steps, and is in the middle of the box in the end. In another
+    // box, which holds it from then on, nothing has to enter.
+    let start = [-45.0, -21.0];
+    let mut air = lattice(settings([160, 56, 1]), vortex(start[0], start[1]));
+    let mut whole = settings([200, 120, 1]);
+    whole.origin += Vector3::new(-20.0, -40.0, 0.0);
+    let wind = vortex(start[0], start[1]);
+    let mut whole = lattice(whole, move |time, x| wind(time + 818.0, x));
     air.advance(1500.0, &[]).unwrap();
-    let worst = departure(&air, [60, 0, 0], [140, 56, 1], |x| wind(1500.0, x));
-    let peak = 0.01 / (2.0 * std::f64::consts::E).sqrt();
-    // The same in a box so wide that it comes in through the inlet.
-    let mut wide = settings([160, 56 + 2 * 120, 1]);
-    wide.origin.y -= 120.0;
-    let mut wide = lattice(wide, vortex(-45.0, -21.0));
-    wide.advance(1500.0, &[]).unwrap();
-    let inlet = departure(&wide, [60, 0, 0], [140, 56, 1], |x| wind(1500.0, x));
-    // 12 % by the side, 18 % by the inlet, most of it what the vortex loses on the way.
-    assert!(worst < inlet && inlet < 0.2 * peak, "off by {worst} and {inlet} of {peak}");
+    whole.advance(682.0, &[]).unwrap();
+    let there = |x: Vector3| {
+        let mut velocity = [Vector3::ZERO];
+        whole.sample(&[x], &mut velocity);
+        velocity[0]
+    };
+    let worst = departure(&air, [0; 3], [150, 56, 1], there);
+    let peak = departure(&air, [0; 3], [150, 56, 1], |_| aslant(15.0));
+    println!("vortex in {worst:e} of {peak:e}");
+    assert!(peak > 3e-3);
+    assert!(worst < 0.05 * peak, "off by {worst} of {peak}");
 }
 
 #[test]
@@ -202,170 +209,136 @@ fn sound_leaves_through_sides() {
     // What comes back is half-way to the middle.
     air.advance(80.0, &[]).unwrap();
     let [entered, left] = [wrong(&air, 10, 40), wrong(&air, 60, 90)];
+    println!("sound {first:e} {last:e}: where wind enters {entered:e}, where it leaves {left:e}");
     assert!(first > 1.5e-3 && last > 1.5e-3);
-    // Half of the amplitude, a quarter of the energy.
-    assert!(left < 0.6 * last, "{left} of {last} came back");
-    // The side where wind enters holds the wind, as an inlet does: nearly all comes back.
-    assert!(entered > 0.7 * first, "{entered} of {first} came back");
-    // Half comes back from one side and nearly all from the other: 0.43 in each way to and fro, of which 930
-    // steps are 2.7, so that a tenth is left of each half, and a fifth
-    // where they meet.
+    assert!(left < 0.05 * last, "{left} of {last} came back");
+    assert!(entered < 0.05 * first, "{entered} of {first} came back");
+    // Of the sound that the ends have made nothing is left either. What the pulse did to the wind at the
+    // inlet is an eddy by now, at x = 92: out of its reach.
     air.advance(800.0, &[]).unwrap();
-    // Ahead of the eddy that the pulse has left where it met the inlet, which the wind has carried to 92.
-    let rest = departure(&air, [170, 0, 0], [190, n[1], 1], |_| wind);
-    assert!(rest < 0.25 * last, "{rest} of {last} is left");
+    let rest = departure(&air, [170, 0, 0], [190, 100, 1], |_| wind);
+    println!("sound in the end {rest:e}");
+    assert!(rest < 0.02 * last);
 }
 
-/// Wind aslant whose temperature is given by time and position, about 300 K.
-struct Warm<F>(F, f64);
-
-impl<F: Fn(f64, Vector3) -> f64 + Send + Sync> Inflow for Warm<F> {
-    fn sample(&self, _: f64, _: &[Vector3], velocities: &mut [Vector3]) {
-        velocities.fill(aslant(self.1));
-    }
-
-    fn sample_temperature(
-        &self,
-        time: f64,
-        positions: &[Vector3],
-        temperatures: &mut [f64],
-    ) -> bool {
-        for (position, temperature) in positions.iter().zip(temperatures) {
-            *temperature = 300.0 + self.0(time, *position);
-        }
-        true
-    }
-}
-
-fn warm(
-    n_cells: [usize; 3],
-    angle: f64,
-    temperature: impl Fn(f64, Vector3) -> f64 + Send + Sync + 'static,
-) -> Lattice {
-    let mut settings = settings(n_cells);
-    settings.kinematic_viscosity = 1e-4;
-    settings.atmosphere =
-        Some(Atmosphere { gravity: 0.0, heating: Heating::None, ..Atmosphere::new(300.0) });
-    Lattice::new(settings, Arc::new(Warm(temperature, angle))).unwrap()
-}
-
-/// Departures from 300 K in the cells of `air`, which is one level high.
-fn temperatures(air: &Lattice) -> Vec<Vec<f32>> {
-    let [n, n_y, _] = air.n_cells();
-    let mut row = AirRow::new(n);
-    (0..n_y)
-        .map(|y| {
-            assert!(air.engine.read_air(y, &mut row));
-            row.temperature[..n].to_vec()
-        })
-        .collect()
-}
-
-#[test]
-fn temperature_that_enters_through_a_side_is_carried_along() {
-    for angle in [30.0, -30.0] {
-        let swing = move |time: f64, x: Vector3| {
-            (TAU / 600.0 * (time - x.dot(aslant(angle)) / SPEED.powi(2))).sin()
-        };
-        let mut air = warm([80, 40, 1], angle, swing);
-        air.advance(1500.0, &[]).unwrap();
-        let mut worst: f64 = 0.0;
-        for (y, row) in temperatures(&air).into_iter().enumerate() {
-            for (x, found) in row.into_iter().enumerate().take(72) {
-                let expected = swing(1500.0, Vector3::new(x as f64, y as f64, 0.0));
-                worst = worst.max((f64::from(found) - expected).abs());
-            }
-        }
-        // A quarter of a cell late, as behind the inlet: 0.026 K.
-        assert!(worst < 0.04, "{angle}: off by {worst}");
-    }
-}
-
-#[test]
-fn a_warm_blob_leaves_through_a_side_and_none_comes_back() {
-    let blob = |x: f64, y: f64| (-(x * x + y * y) / 64.0).exp();
-    let mut air =
-        warm(
-            [160, 40, 1],
-            15.0,
-            move |time, x| {
-                if time > 0.0 { 0.0 } else { blob(x.x - 30.0, x.y - 20.0) }
-            },
-        );
-    let most = |air: &Lattice| {
-        temperatures(air).concat().into_iter().fold(0.0_f32, |most, t| most.max(t.abs()))
+/// Air with gusts of all directions, which blow now in and now out through either side.
+fn gusty(stencil: Stencil, threads: usize, backend: Backend) -> Lattice {
+    let mut settings = settings([37, 12, 9]);
+    (settings.stencil, settings.backend) = (stencil, Some(backend));
+    settings.threads = Some(threads);
+    let wind = |time: f64, x: Vector3| {
+        let phase = 0.4 * (x.x - SPEED * time);
+        let gust = Vector3::new(phase.sin(), (phase + 0.3 * x.z).cos(), (phase + 0.5 * x.y).sin());
+        veering(2.0 * x.z) + 0.01 * gust
     };
-    let mut left = Vec::new();
-    for _ in 0..4 {
-        air.advance(300.0, &[]).unwrap();
-        left.push(most(&air));
+    match stencil {
+        Stencil::D3Q19 => {
+            settings.ground = Ground::WallStress { roughness_length: 0.01 };
+            settings.subgrid = Subgrid::new(SubgridModel::MinimumDissipation);
+            settings.atmosphere = Some(Atmosphere { gravity: 0.01, ..Atmosphere::new(300.0) });
+        }
+        // What this ground turns back beside a side has not come through it.
+        Stencil::D3Q27 => settings.ground = Ground::NoSlip,
     }
-    // Its middle passes the side after 770 steps, at x = 105, and is 12 cells beyond the last cell in the
-    // end, where a tenth of it is left.
-    let beyond = 20.0 + 1200.0 * aslant(15.0).y - 39.0;
-    assert!(left[0] > 0.95, "{left:?}");
-    assert!(
-        (f64::from(left[3]) - blob(0.0, beyond)).abs() < 0.03,
-        "{left:?}, {}",
-        blob(0.0, beyond)
-    );
+    lattice(settings, wind)
+}
+
+/// Wind everywhere, as bits, and temperature where there is one.
+fn bits(air: &Lattice) -> Vec<u32> {
+    let volume = air.volume(1);
+    let wind = volume.velocity.concat();
+    let mut row = AirRow::new(37);
+    let told = (0..108).filter(|number| air.engine.read_air(*number, &mut row)).count();
+    assert!(told == 0 || told == 108);
+    let mut all: Vec<u32> = wind.into_iter().map(f32::to_bits).collect();
+    for number in 0..told {
+        air.engine.read_air(number, &mut row);
+        all.extend(row.temperature[..37].iter().map(|t| t.to_bits()));
+    }
+    all
 }
 
 #[test]
 fn threads_and_resuming_change_no_bit() {
-    let begin = |threads: usize| {
-        let swing = |time: f64, x: Vector3| (0.01 * time + 0.1 * x.x + 0.2 * x.y).sin();
-        let mut settings = settings([24, 8, 4]);
-        (settings.ground, settings.threads) = (Ground::Slip, Some(threads));
-        settings.kinematic_viscosity = 1e-4;
-        settings.atmosphere =
-            Some(Atmosphere { gravity: 0.0, heating: Heating::None, ..Atmosphere::new(300.0) });
-        Lattice::new(settings, Arc::new(Warm(swing, 20.0))).unwrap()
-    };
-    let bits = |air: &mut Lattice| {
-        let mut bytes = Vec::new();
-        air.write_state(&mut bytes).unwrap();
-        bytes
-    };
-    let [mut one, mut three] = [1, 3].map(begin);
-    // Not a whole number of the times at which the inflow is asked.
-    one.advance(130.0, &[]).unwrap();
-    three.advance(130.0, &[]).unwrap();
-    let kept = bits(&mut one);
-    let mut resumed = begin(2);
-    resumed.read_state(&mut kept.as_slice()).unwrap();
-    for air in [&mut one, &mut three, &mut resumed] {
-        air.advance(57.0, &[]).unwrap();
-    }
-    let one = bits(&mut one);
-    assert!(one == bits(&mut three) && one == bits(&mut resumed) && one != kept);
-}
-
-/// A wind that was asked for ever later times alone.
-struct Onward(std::sync::Mutex<f64>);
-
-impl Inflow for Onward {
-    fn sample(&self, time: f64, _: &[Vector3], velocities: &mut [Vector3]) {
-        let mut latest = self.0.lock().unwrap();
-        assert!(time >= *latest, "asked for {time} after {latest}");
-        *latest = time;
-        velocities.fill(aslant(10.0));
+    for backend in Backend::ALL.into_iter().filter(|backend| backend.is_available()) {
+        for stencil in [Stencil::D3Q19, Stencil::D3Q27] {
+            // No whole number of the times at which the inflow is asked, and of either parity.
+            for steps in [131.0, 146.0] {
+                let [mut one, mut three] = [1, 3].map(|n| gusty(stencil, n, backend));
+                one.advance(steps, &[]).unwrap();
+                three.advance(steps, &[]).unwrap();
+                let mut kept = Vec::new();
+                one.write_state(&mut kept).unwrap();
+                let mut resumed = gusty(stencil, 2, backend);
+                resumed.advance(7.0, &[]).unwrap();
+                resumed.read_state(&mut kept.as_slice()).unwrap();
+                for air in [&mut one, &mut three, &mut resumed] {
+                    air.advance(57.0, &[]).unwrap();
+                }
+                assert!(bits(&one) == bits(&three), "{backend:?} {stencil:?} on three threads");
+                assert!(bits(&one) == bits(&resumed), "{backend:?} {stencil:?} resumed");
+            }
+        }
     }
 }
 
 #[test]
-fn the_inflow_is_never_asked_for_what_is_over() {
-    let begin = || {
-        let mut settings = settings([12, 6, 3]);
-        settings.threads = Some(3);
-        Lattice::new(settings, Arc::new(Onward(std::sync::Mutex::new(0.0)))).unwrap()
+fn gusts_through_the_sides_stay_gusts() {
+    for stencil in [Stencil::D3Q19, Stencil::D3Q27] {
+        let mut air = gusty(stencil, 1, Backend::detect());
+        air.advance(6000.0, &[]).unwrap();
+        air.check().unwrap();
+        let [u, v, w] = air.volume(1).velocity;
+        let fastest = u.iter().zip(v).zip(w).map(|((u, v), w)| u * u + v * v + w * w);
+        let fastest = fastest.fold(0.0_f32, f32::max).sqrt();
+        println!("gusts {stencil:?} {fastest}");
+        // Wind and gust together are 0.117 at the most; what meets by chance may be as much faster again.
+        assert!(fastest < 0.134, "{stencil:?}: {fastest}");
+    }
+}
+
+#[test]
+fn a_wind_aslant_makes_no_eddies_at_the_sides() {
+    for model in SubgridModel::ALL.into_iter().filter(|model| model.needs_neighbours()) {
+        let mut settings = settings([12, 8, 4]);
+        settings.subgrid = Subgrid::new(model);
+        let mut air = lattice(settings, |_, _| aslant(15.0));
+        air.advance(40.0, &[]).unwrap();
+        let most = air.eddy_viscosity().unwrap().into_iter().fold(0.0, f64::max);
+        assert!(most < 1e-6, "{model:?}: {most}");
+    }
+}
+
+#[test]
+fn what_open_sides_need_is_checked() {
+    let refusal = |change: fn(&mut LatticeSettings)| {
+        let mut settings = settings([16, 8, 4]);
+        change(&mut settings);
+        settings.check().unwrap_err().to_string()
     };
-    let mut air = begin();
-    air.advance(13.0, &[]).unwrap();
-    let mut kept = Vec::new();
-    air.write_state(&mut kept).unwrap();
-    let mut resumed = begin();
-    resumed.read_state(&mut kept.as_slice()).unwrap();
-    resumed.advance(9.0, &[]).unwrap();
-    air.advance(9.0, &[]).unwrap();
+    assert!(refusal(|s| s.ends = Ends::Periodic).contains("inlet"));
+    assert!(refusal(|s| s.n_cells[1] = 3).contains("along y"));
+    assert!(refusal(|s| s.kinematic_viscosity = 0.06).contains("viscosity"));
+}
+
+#[test]
+fn boxes_of_finer_cells_keep_off_open_sides() {
+    let with = |first_cell, n_cells| {
+        let mut settings = settings([20, 16, 8]);
+        settings.ground = Ground::Slip;
+        let boxes = [Refinement { first_cell, n_cells, within: Vec::new() }];
+        Refined::new(settings, &boxes, Arc::new(Wind(|_, _| aslant(15.0))))
+    };
+    for first in [0, 1, 11, 12] {
+        let refused = with([4, first, 0], [8, 4, 4]);
+        assert!(matches!(refused, Err(RefinementError::TooClose { axis: "y", .. })), "{first}");
+    }
+    let mut air = with([4, 2, 0], [8, 12, 4]).unwrap();
+    air.advance(300.0, &[]).unwrap();
+    let places = [[3.0, 0.0, 2.0], [8.0, 1.5, 1.0], [8.0, 15.0, 7.0], [19.0, 8.0, 4.0]];
+    let mut velocities = [Vector3::ZERO; 4];
+    air.sample(&places.map(Vector3::from_array), &mut velocities);
+    for velocity in velocities {
+        assert!((velocity - aslant(15.0)).length() < 1e-5 * SPEED, "{velocity}");
+    }
 }

@@ -96,7 +96,7 @@ fn a_body_leaves_nothing_where_it_is_not_followed() {
     let settings = WakeSettings { bodies: BodyWakes::NONE, ..settings() };
     let profile = MeanProfile::Uniform { speed: WIND };
     let wind = PrescribedWind::everywhere(Arc::new(profile));
-    let mut wake = FreeWake::new(settings, wind).expect("sound settings");
+    let mut wake = FreeWake::new(settings.clone(), wind).expect("sound settings");
     for _ in 0..5 {
         wake.advance(settings.interval, &[drag(0.8)]).expect("it stays finite");
     }

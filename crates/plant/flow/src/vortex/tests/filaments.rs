@@ -91,7 +91,7 @@ fn wakes_end_where_they_are_told_to() {
     assert_eq!([-20.0, 30.0].map(|place| resolution.length_behind(place)), [120.0, 70.0]);
     assert_eq!(resolution.length_behind(-80.0), resolution.length);
     let settings = WakeSettings { resolution, ..settings() };
-    let (mut grown, mut at_once) = (wake(settings), wake(settings));
+    let (mut grown, mut at_once) = (wake(settings.clone()), wake(settings));
     advanced(&mut grown, 0..120);
     advanced(&mut at_once, 0..1);
     at_once.reach_full_length();

@@ -1,7 +1,7 @@
 //! Wakes of rotors that turn at will: what must hold whatever they do.
 
 use crate::fields::FieldSource;
-use crate::inflow::{MeanProfile, PrescribedWind};
+use crate::inflow::{ColumnLevel, MeanColumn, MeanProfile, PrescribedWind};
 use crate::vortex::{
     Accuracy, BodyWakes, Cores, FreeWake, MeanShear, Points, Resolution, WakeSettings,
 };
@@ -123,7 +123,15 @@ fn shear_that_is_left_out_does_not_lean_a_wake() {
     let left_out = MeanShear::LeftOut { profile, hub_height: HUB.z, veer: 0.0 };
     // 8 m/s over ten seconds; at 120 m the wind is 4 % faster than at the hub.
     assert!(lean(MeanShear::Carries) > 1.0);
-    assert!(lean(left_out) < 1e-9, "{}", lean(left_out));
+    assert!(lean(left_out.clone()) < 1e-9, "{}", lean(left_out));
+    // The same mean, taken of a record: linear between heights ten metres apart.
+    let level = |k: u32| {
+        let height = 10.0 * f64::from(k);
+        ColumnLevel { height, wind: [profile.speed(height), 0.0], temperature: 0.0 }
+    };
+    let column = MeanColumn::new((1..20).map(level).collect()).expect("heights that rise");
+    let of_record = lean(MeanShear::LeftOutOf(Arc::new(column)));
+    assert!(of_record < 0.05, "{of_record}");
 }
 
 #[test]
@@ -296,17 +304,44 @@ fn a_wake_that_blows_up_says_when_and_where() {
 }
 
 #[test]
+fn a_rotor_that_turns_too_far_in_a_step_ends_the_run() {
+    // As `forces` have it, a step is 0.15 rad: blades of step 0 that end where those of step `n` stand.
+    let turning = |n: usize| {
+        let (mut now, then) = (forces(0, 25.0), forces(n, 25.0));
+        for (force, after) in now.iter_mut().zip(then) {
+            let (Some(bound), Some(after_bound)) = (&mut force.bound, after.bound) else {
+                continue;
+            };
+            (bound.position_after, bound.along_after) = (after.position, after_bound.along);
+        }
+        now
+    };
+    let mut free = wake(settings());
+    assert_eq!(free.advance(INTERVAL, &turning(5)), Ok(()));
+    let error = free.advance(INTERVAL, &turning(6)).expect_err("0.9 rad are 52°");
+    let FlowError::TurnedTooFar { time, position, turn, most } = error else { panic!("{error}") };
+    assert!((time - 2.0 * INTERVAL).abs() < 1e-12 && (turn - 0.9).abs() < 1e-9 && turn > most);
+    assert!((position - HUB).length() < 1e-9, "{position}");
+    assert!(error.to_string().contains("turned by 52° in the step up to 0.40 s"), "{error}");
+}
+
+#[test]
 fn settings_that_cannot_be_are_named() {
     let sound = settings();
     let refused = |settings: WakeSettings| settings.check().expect_err("refused").to_string();
-    let error = refused(WakeSettings { interval: 0.0, ..sound });
+    let error = refused(WakeSettings { interval: 0.0, ..sound.clone() });
     assert_eq!(error, "a free wake cannot have step (s) = 0; expected a positive number");
     let accuracy = Accuracy { degree: 3, opening: 1.0 };
-    assert!(refused(WakeSettings { accuracy, ..sound }).contains("less than 1"));
+    assert!(refused(WakeSettings { accuracy, ..sound.clone() }).contains("less than 1"));
     let resolution = Resolution { far_filaments: 1, ..sound.resolution };
-    assert!(refused(WakeSettings { resolution, ..sound }).contains("two at least"));
+    assert!(refused(WakeSettings { resolution, ..sound.clone() }).contains("two at least"));
     let resolution = Resolution { end: f64::NAN, ..sound.resolution };
-    assert!(refused(WakeSettings { resolution, ..sound }).contains("end along x (m) = NaN"));
+    assert!(
+        refused(WakeSettings { resolution, ..sound.clone() }).contains("end along x (m) = NaN")
+    );
     let cores = Cores { initial_widths: f64::NAN, ..sound.cores };
-    assert!(refused(WakeSettings { cores, ..sound }).contains("core at birth over widths = NaN"));
+    assert!(
+        refused(WakeSettings { cores, ..sound.clone() })
+            .contains("core at birth over widths = NaN")
+    );
 }

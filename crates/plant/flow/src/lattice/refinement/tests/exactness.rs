@@ -227,8 +227,8 @@ fn boxes_are_checked_with_what_would_do() {
     let mut held = settings.clone();
     held.ground = Ground::NoSlip;
     let on_ground = cells([3, 3, 0], [4, 4, 4]);
-    assert!(on_ground.check(held.n_cells, &beyond(&held)).is_err());
-    assert_eq!(on_ground.check(settings.n_cells, &beyond(&settings)), Ok(()));
+    assert!(on_ground.check(held.n_cells, &beyond(&held), false).is_err());
+    assert_eq!(on_ground.check(settings.n_cells, &beyond(&settings), false), Ok(()));
     let mut place = on_ground;
     place.within.push(cells([2, 2, 1], [2, 2, 2]));
     assert!(refusal(&[place]).contains("along z comes too close"));
