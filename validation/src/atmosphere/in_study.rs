@@ -6,7 +6,8 @@ use crate::row::Tolerance::Within;
 use crate::studies::{Carried, failure, summaries};
 use flow::inflow::PlaneGrid;
 use formats::turbulence_box;
-use std::path::Path;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 const SOURCE: &str = "the precursor, in which the mean is alike everywhere";
 const CASE: &str = include_str!("../../cases/empty-in-atmosphere.toml");
@@ -18,6 +19,11 @@ const SPEED: f64 = 1.0;
 const DIRECTION: f64 = 0.5;
 const VEER: f64 = 0.5;
 const INTENSITY: f64 = 10.0;
+/// Accepted difference of open from periodic sides, on the same planes: mean speed (%) and direction (deg).
+const OTHER_SPEED: f64 = 0.5;
+const OTHER_DIRECTION: f64 = 0.25;
+/// Length (s) of the blocks whose scatter tells how sure such a difference is.
+const BLOCK: f64 = 300.0;
 
 /// A way to let the wind in: its name, whether it is judged, and its keys, in which `{}` is the precursor's
 /// folder.
@@ -82,15 +88,67 @@ pub fn study_in_atmosphere() -> Vec<Row> {
         Ok((_, folder)) => folder,
         Err(problem) => return failure(problem),
     };
-    WAYS.iter().flat_map(|way| of_way(way, &folder).unwrap_or_else(failure)).collect()
+    let mut rows: Vec<Row> =
+        WAYS.iter().flat_map(|way| of_way(way, &folder).unwrap_or_else(failure)).collect();
+    rows.extend(open_for_periodic(&folder).unwrap_or_else(failure));
+    rows
+}
+
+/// What open sides change where periodic ones have the same planes: eddies are the same ones, so that little
+/// of their chance is in the difference.
+fn open_for_periodic(precursor: &Path) -> Result<Vec<Row>, String> {
+    let [periodic, open] = [run_of(&WAYS[0], precursor)?, run_of(&WAYS[1], precursor)?];
+    let mut rows = Vec::new();
+    for name in ["inflow-T1.bts", "inflow-T2.bts"] {
+        let [periodic, open] = [&periodic, &open].map(|run| blocks(&run.join(name)));
+        let (periodic, open) = (periodic?, open?);
+        let pairs = || periodic.iter().zip(&open);
+        let speed = pairs().map(|(p, o)| 100.0 * (o.speed / p.speed - 1.0)).collect();
+        let direction = pairs().map(|(p, o)| o.direction - p.direction).collect();
+        let place = &name["inflow-".len()..name.len() - ".bts".len()];
+        for (what, values, reach, unit) in [
+            ("mean speed over the rotor", speed, OTHER_SPEED, "%"),
+            ("direction at hub height", direction, OTHER_DIRECTION, "deg"),
+        ] {
+            let values: Vec<f64> = values;
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+            let error = (squares / (n - 1.0) / n).sqrt();
+            tell!(
+                "open less periodic sides, {what} at {place}: {mean:+.3} {unit}, standard error {error:.3} of {n} blocks"
+            );
+            rows.push(Row {
+                what: format!("planes, open less periodic sides: {what} where {place} would stand"),
+                measured: mean,
+                expected: 0.0,
+                tolerance: Within(reach),
+                unit,
+                source: "the same planes between periodic sides",
+            });
+        }
+    }
+    Ok(rows)
+}
+
+/// The folder of the run of `way`, which is made if it is not there.
+fn run_of(way: &Way, precursor: &Path) -> Result<PathBuf, String> {
+    let keys = way.keys.iter().map(|key| key.replace("{}", &precursor.display().to_string()));
+    let (_, folder) = summaries(Carried::Own(CASE), way.folder, keys.collect())?;
+    Ok(folder.join("empty"))
+}
+
+/// Wind over the rotor in each whole block of the record at `path`.
+fn blocks(path: &Path) -> Result<Vec<OverRotor>, String> {
+    let grid = turbulence_box::open(path).map_err(|error| error.to_string())?.grid();
+    let n = (BLOCK / grid.interval).round() as usize;
+    (0..grid.n_steps / n).map(|block| over_rotor(path, block * n..(block + 1) * n)).collect()
 }
 
 fn of_way(way: &Way, precursor: &Path) -> Result<Vec<Row>, String> {
-    let keys = way.keys.iter().map(|key| key.replace("{}", &precursor.display().to_string()));
-    let (_, folder) = summaries(Carried::Own(CASE), way.folder, keys.collect())?;
-    let run = folder.join("empty");
+    let run = run_of(way, precursor)?;
     let [before, behind] =
-        ["inflow-T1.bts", "inflow-T2.bts"].map(|name| over_rotor(&run.join(name)));
+        ["inflow-T1.bts", "inflow-T2.bts"].map(|name| over_rotor(&run.join(name), 0..usize::MAX));
     let (before, behind) = (before?, behind?);
     tell!(
         "{}: speed {:.3} and {:.3} m/s, direction {:+.2} and {:+.2}°, veer {:.2} and {:.2}°, intensity {:.2} and {:.2} %",
@@ -139,14 +197,15 @@ fn of_way(way: &Way, precursor: &Path) -> Result<Vec<Row>, String> {
     ])
 }
 
-/// What the record at `path` tells, whose hub is the middle of its width.
-fn over_rotor(path: &Path) -> Result<OverRotor, String> {
+/// What those of `steps` that the record at `path` has tell; its hub is the middle of its width.
+fn over_rotor(path: &Path, steps: Range<usize>) -> Result<OverRotor, String> {
     let mut planes = turbulence_box::open(path).map_err(|error| error.to_string())?;
     let grid = planes.grid();
     let n_points = grid.n_y * grid.n_z;
     let (mut sums, mut squares) = (vec![[0.0; 3]; n_points], vec![0.0; n_points]);
     let mut plane = vec![[0.0; 3]; n_points];
-    for step in 0..grid.n_steps {
+    let steps = steps.start..steps.end.min(grid.n_steps);
+    for step in steps.clone() {
         planes.read(step, &mut plane).map_err(|error| error.to_string())?;
         for ((wind, sum), square) in plane.iter().zip(&mut sums).zip(&mut squares) {
             for (value, sum) in wind.iter().copied().map(f64::from).zip(sum) {
@@ -155,7 +214,7 @@ fn over_rotor(path: &Path) -> Result<OverRotor, String> {
             }
         }
     }
-    let n = grid.n_steps as f64;
+    let n = steps.len() as f64;
     let means: Vec<[f64; 3]> = sums.iter().map(|sum| sum.map(|sum| sum / n)).collect();
     let hub = hub_of(&grid);
     let (mut speed, mut energy, mut n_inside) = (0.0, 0.0, 0.0);

@@ -52,7 +52,7 @@ pub static KEYS: [Key; 12] = [
         Holds::Choice(&["periodic", "slip", "open"]),
         "",
         Value("\"periodic\""),
-        "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them. `open`: at each height wind enters, as it blows in at that place, through the side that its mean blows in by, and leaves through the other; for wind that veers.",
+        "`periodic`: what leaves on one side enters on the other. `slip`: the air slips along them. `open`: at each height and at each time wind enters through a side by which its mean along the side blows in, as it blows at that place, and leaves where the mean blows out; for wind that veers.",
     ),
     key(
         "blockage",

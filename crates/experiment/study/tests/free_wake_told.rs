@@ -168,7 +168,7 @@ fn lean(wind: &str, shear: &str) -> f64 {
 /// Mean place along the wind (m) of the nodes that left the blades in the first seconds, at heights (m) where
 /// `is_there`.
 fn place_of_oldest(filaments: &Filaments, is_there: impl Fn(f32) -> bool) -> f64 {
-    let oldest = filaments.pieces.iter().filter(|piece| piece.age > 15.0);
+    let oldest = filaments.pieces.iter().filter(|piece| piece.age > 12.0);
     let nodes = oldest.map(|piece| filaments.nodes[piece.ends[0] as usize]);
     let places: Vec<f64> =
         nodes.filter(|node| is_there(node[2])).map(|node| f64::from(node[0])).collect();
@@ -180,7 +180,7 @@ fn place_of_oldest(filaments: &Filaments, is_there: impl Fn(f32) -> bool) -> f64
 fn the_shear_of_a_file_is_left_out_as_the_file_has_it() {
     for wind in ["table = \"u.csv\"", "planes = \"w.bts\""] {
         let [carried, left_out] = ["carried", "left-out"].map(|shear| lean(wind, shear));
-        // Some 1.5 m/s between the halves, for more than fifteen seconds.
+        // Some 1.5 m/s between the halves, for more than twelve seconds.
         assert!(carried > 15.0 && left_out.abs() < 0.25 * carried, "{wind} {carried} {left_out}");
     }
 }

@@ -100,7 +100,11 @@ pub enum FlowError {
         speed: f64,
     },
     /// A rotor turned so far in a step that what its blades leave behind is no helix.
-    #[error("a rotor turned by {turn:.0}° in the step up to {time:.2} s, at x {x:.0} m, y {y:.0} m, z {z:.0} m; the maximum is {most:.0}°", turn = turn.to_degrees(), most = most.to_degrees(), x = position.x, y = position.y, z = position.z)]
+    #[error(
+        "a rotor turned by {turn:.0}° in the step up to {time:.2} s, at x {x:.0} m, y {y:.0} m, z {z:.0} m; the maximum is {most:.0}°",
+        turn = turn.to_degrees(), most = most.to_degrees(),
+        x = position.x, y = position.y, z = position.z
+    )]
     TurnedTooFar {
         /// Simulated time at the end of the step (s).
         time: f64,

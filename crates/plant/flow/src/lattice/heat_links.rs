@@ -68,8 +68,8 @@ pub trait HeatExchange {
     /// Takes note that temperatures on `levels` were changed since the last step.
     fn settle(&mut self, levels: Range<usize>);
 
-    /// On return `means` holds the temperature of each level that buoyancy starts from, and `bases` that which
-    /// fluxes count from (K above the reference).
+    /// On return `means` holds the temperature of each level that buoyancy starts from, and `bases` that
+    /// which fluxes count from (K above the reference).
     fn levels(&self, means: &mut [f32], bases: &mut [f32]);
 
     /// The same of what damping goes to.

@@ -229,8 +229,8 @@ pub enum Sides {
     Periodic,
     /// Air slips along them.
     Slip,
-    /// Wind enters and leaves as the inflow has it there: at each height it enters through the side that the
-    /// inflow's mean wind blows in by, and leaves through the other.
+    /// Wind enters and leaves as the inflow has it there: at each height and time it enters through a side by
+    /// which the inflow's mean along it blows in, and leaves where that blows out.
     Open,
 }
 

@@ -36,6 +36,9 @@ pub(crate) struct OpenSides {
     heat: Option<SideHeat>,
     /// Density less one.
     excess: Vec<f32>,
+    /// How far the inflow entered in the last step, cell by cell, and the wind along y there.
+    entered: Vec<f32>,
+    across: Vec<f32>,
     times: Times,
     /// Weight of the later of the two times in the present step (–).
     weight: f32,
@@ -72,6 +75,9 @@ pub(crate) struct Beside {
     pub(crate) weight: f32,
     /// Density less one.
     pub(crate) excess: *mut f32,
+    /// How far the inflow entered last, and the wind along y there.
+    pub(crate) entered: *mut f32,
+    pub(crate) across: *mut f32,
     /// How far the inflow enters there: 1 where it does, 0 where air leaves.
     pub(crate) share: f32,
     /// Sense of y out of the box: 1 or −1.
@@ -110,6 +116,8 @@ impl OpenSides {
             means: [vec![[0.0; 2]; rows.len()], vec![[0.0; 2]; rows.len()]],
             heat,
             excess: column(),
+            entered: column(),
+            across: column(),
             times: Times::before_all(),
             weight: 0.0,
             positions: vec![Vector3::ZERO; n_cells + 2],
@@ -124,6 +132,11 @@ impl OpenSides {
         self.times = Times::before_all();
         self.ask(0, inflow, scaling, 1);
         self.excess.fill(0.0);
+        self.across.copy_from_slice(&self.around[1][1]);
+        for number in 0..self.rows.len() {
+            let share = self.share(number);
+            self.entered[number * self.stride..][..self.n_cells].fill(share);
+        }
     }
 
     /// On return they hold the wind of `inflow` at step number `step`.
@@ -208,14 +221,17 @@ impl OpenSides {
             outward: row.outward,
             corners: self.corners(),
             excess: self.excess[start..].as_mut_ptr(),
+            entered: self.entered[start..].as_mut_ptr(),
+            across: self.across[start..].as_mut_ptr(),
         })
     }
 
-    /// Rows of the box that these border on (y and z), how far the inflow enters there, and its temperatures
-    /// in the present step as departures (K), where it tells them.
+    /// Rows of the box that these border on (y and z); how far the inflow entered there in the last step,
+    /// cell by cell, and the wind along y; and the inflow's temperatures in the present step as departures
+    /// (K), where it tells them.
     pub(crate) fn temperatures(
         &self,
-    ) -> impl Iterator<Item = ([usize; 2], f32, Option<impl Iterator<Item = f32>>)> {
+    ) -> impl Iterator<Item = ([usize; 2], [&[f32]; 2], Option<impl Iterator<Item = f32>>)> {
         let weight = self.weight;
         self.rows.iter().enumerate().map(move |(number, row)| {
             let cells = number * self.stride..number * self.stride + self.n_cells;
@@ -224,7 +240,8 @@ impl OpenSides {
                     heat.around.each_ref().map(|column| column[cells.clone()].iter());
                 before.zip(after).map(move |(before, after)| before + weight * (after - before))
             });
-            (row.place, self.share(number), told)
+            let last = [&self.entered, &self.across].map(|column| &column[cells.clone()]);
+            (row.place, last, told)
         })
     }
 
@@ -232,7 +249,7 @@ impl OpenSides {
     pub(crate) fn write(&self, writer: &mut dyn Write, bytes: &mut Vec<u8>) -> Result<()> {
         let warm = self.heat.iter().flat_map(|heat| &heat.around);
         let wind = || self.around.iter().flatten().chain(warm.clone());
-        let columns = || [&self.excess].into_iter().chain(wind());
+        let columns = || [&self.excess, &self.entered, &self.across].into_iter().chain(wind());
         (0..self.rows.len()).try_for_each(|number| {
             for column in columns() {
                 for range in self.kept(number) {
@@ -255,7 +272,8 @@ impl OpenSides {
             let kept = self.kept(number);
             let warm = self.heat.iter_mut().flat_map(|heat| &mut heat.around);
             let wind = self.around.iter_mut().flatten().chain(warm);
-            for column in [&mut self.excess].into_iter().chain(wind) {
+            let last = [&mut self.excess, &mut self.entered, &mut self.across];
+            for column in last.into_iter().chain(wind) {
                 for range in kept.clone() {
                     read_values(reader, bytes, &mut column[range])?;
                 }

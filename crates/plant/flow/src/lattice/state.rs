@@ -3,10 +3,10 @@
 //! Little-endian: magic, version, cells along x, y, z, populations a cell, steps made; forces of the last
 //! step (position, force, smearing length each); then what the engine writes, which on the processor is the
 //! outlet halo row by row, what the inflow told last row by row, where sides are open the density of the halo
-//! beyond them and what the inflow told there, the filtered wind at the ground, all populations; in an
-//! atmosphere also what the ground remembers, the mean temperatures of the levels, temperature now and a step
-//! before, and its last change; where a pass of its own finds the viscosity of eddies, that, and their
-//! diffusivity in an atmosphere.
+//! beyond them, how far the inflow entered, the wind through them and what the inflow told there, the
+//! filtered wind at the ground, all populations; in an atmosphere also what the ground remembers, the mean
+//! temperatures of the levels, temperature now and a step before, and its last change; where a pass of its
+//! own finds the viscosity of eddies, that, and their diffusivity in an atmosphere.
 //! Everything else follows from settings and inflow.
 
 use super::fields::N_KEPT;
@@ -19,7 +19,7 @@ use std::io::{Error, ErrorKind, Read, Result, Write};
 const MAGIC: [u8; 8] = *b"wmlattic";
 const VERSION: u64 = 3;
 /// The same with what lies beyond open sides.
-const VERSION_OPEN: u64 = 4;
+const VERSION_OPEN: u64 = 5;
 /// More forces than this are a sign of a damaged file.
 const MOST_FORCES: u64 = 1 << 24;
 

@@ -101,7 +101,7 @@ fn boxes_in_an_atmosphere_and_between_open_sides_keep_off() {
     assert!(plan(&filled, &footprints()).is_ok());
     filled.flow.values.set("sides", Value::Text("open".into()));
     let words = error(&filled).to_string();
-    assert!(words.contains("along y") && words.contains("lower its width_diameters"), "{words}");
+    assert!(words.contains("spans y") && words.contains("lower its width_diameters"), "{words}");
 }
 
 #[test]

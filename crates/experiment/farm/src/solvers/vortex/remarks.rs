@@ -47,11 +47,11 @@ fn of_spin_up(case: &Case, plan: &Plan) -> Option<String> {
     let grown = plan.n_growing_steps as f64 * plan.interval;
     (plan.n_spin_up_steps < plan.n_growing_steps).then(|| {
         format!(
-            "wakes take some {grown:.3} s to grow to their length, and time.spin_up = {} s is shorter: the first of what is analysed has less induction, and more \
-             power, than with wakes that stand; raise time.spin_up to {:.3} or more",
+            "wakes take some {grown:.0} s to grow to their length, and time.spin_up = {} s is shorter: the first of what is analysed has less induction, and more \
+             power, than with wakes that stand; raise time.spin_up to {:.0} or more",
             case.time.spin_up,
             // As much again for what left the blades at the start to be gone.
-            1.5 * grown
+            (1.5 * grown).ceil()
         )
     })
 }

@@ -1,10 +1,10 @@
-//! Temperature beyond open sides.
+//! Temperature beyond open sides, and the wind through them that carries it.
 
 use crate::lattice::layout::{Edge, LINE};
 use crate::lattice::memory::Memory;
 
-/// Temperatures beyond both sides, level by level, as departures from the reference (K): the same at every
-/// distance, as beyond the inlet.
+/// Temperatures beyond both sides, level by level, as departures from the reference (K), the same at every
+/// distance, as beyond the inlet; and the wind along y next to the box (cells per step).
 ///
 /// Each row of it is written by the thread of the row of the box beside it, before any thread reads it in the
 /// same step.
@@ -22,15 +22,22 @@ impl Beside {
             return Some(None);
         }
         let stride = n_cells[0].next_multiple_of(LINE);
-        let memory = Memory::zeroed(2 * n_cells[2] * stride)?;
+        let memory = Memory::zeroed(4 * n_cells[2] * stride)?;
         Some(Some(Self { memory, stride, n_levels: n_cells[2] }))
     }
 
-    /// First value beyond the first (0) or last `side` at level `z`; whole vectors of a row's cells follow.
+    /// First temperature beyond the first (0) or last `side` at level `z`; whole vectors of a row's cells
+    /// follow.
     #[inline(always)]
     pub(super) fn row(&self, side: usize, z: usize) -> *mut f32 {
         // Inside the array for levels of the box.
         self.memory.start().wrapping_add((side * self.n_levels + z) * self.stride)
+    }
+
+    /// The wind there, likewise.
+    #[inline(always)]
+    pub(super) fn wind(&self, side: usize, z: usize) -> *mut f32 {
+        self.row(2 + side, z)
     }
 
     /// Memory that they hold (bytes).

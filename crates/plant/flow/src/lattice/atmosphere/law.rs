@@ -43,8 +43,8 @@ pub(crate) struct StratifiedRow<S> {
     viscosity: Option<*const f32>,
     n_cells: usize,
     periodic: bool,
-    /// Wind along x behind its last cell, where what lies beyond its ends is given: whole vectors of cells are
-    /// written, and it may be overwritten with them.
+    /// Wind along x behind its last cell, where what lies beyond its ends is given: whole vectors of cells
+    /// are written, and it may be overwritten with them.
     given: Option<f32>,
 }
 

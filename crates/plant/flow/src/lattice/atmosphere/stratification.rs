@@ -215,17 +215,22 @@ impl Stratification {
     }
 
     /// Gives what lies beyond the `sides` its temperatures for step number `n_steps`: those that the inflow
-    /// tells, or the level's, where it enters, and those of the cells inside where air leaves.
+    /// tells, or the level's, where it enters, and those of the cells inside where air leaves; and the wind
+    /// that blows through them.
     pub(crate) fn enter_sides(&self, n_steps: u64, sides: &OpenSides) {
         let Some(beside) = &self.beside else { return };
-        for ([y, z], share, mut told) in sides.temperatures() {
+        for ([y, z], [entered, across], mut told) in sides.temperatures() {
             let inside = self.fields.cells(Fields::temperature(n_steps), y, z);
-            let row = beside.row(usize::from(y > 0), z);
+            let side = usize::from(y > 0);
+            let (row, wind) = (beside.row(side, z), beside.wind(side, z));
             for (x, inside) in inside.iter().enumerate() {
                 let entering = told.as_mut().and_then(Iterator::next);
                 let entering = entering.unwrap_or(self.levels[z].target);
-                // SAFETY: a row that only this thread writes, and nobody reads meanwhile.
-                unsafe { *row.add(x) = inside + share * (entering - inside) };
+                // SAFETY: rows that only this thread writes, and nobody reads meanwhile.
+                unsafe {
+                    *row.add(x) = inside + entered[x] * (entering - inside);
+                    *wind.add(x) = across[x];
+                }
             }
         }
     }
@@ -250,8 +255,8 @@ impl Stratification {
         self.temperature(n_steps, row).iter().sum()
     }
 
-    /// The levels whose numbers are in `levels` follow their means, once all sums are in, where buoyancy refers
-    /// to them. Those of a box in the air of another grid follow that one's.
+    /// The levels whose numbers are in `levels` follow their means, once all sums are in, where buoyancy
+    /// refers to them. Those of a box in the air of another grid follow that one's.
     pub(crate) fn follow(&mut self, levels: Range<usize>) {
         if self.reference == Reference::Start || self.fields.joined != Faces::default() {
             return;

@@ -142,33 +142,10 @@ impl Row {
     fn new(step: &Transport<'_>, ghosts: &Ghosts, [y, z]: [usize; 2], source: *const f32) -> Self {
         let fields = step.fields;
         let n_z = fields.n_cells[2];
-        let now = Fields::temperature(step.n_steps);
-        let at = |field, y, z| fields.row(field, y, z).cast_const();
-        let here = at(now, y, z);
-        let mut temperature = [[here; 2 * REACH + 1]; 3];
-        for (index, offset) in (-(REACH as isize)..=REACH as isize).enumerate() {
-            temperature[0][index] = here.wrapping_offset(offset);
-            temperature[1][index] = match (step.beside, fields.side(y, offset)) {
-                (Some(beside), Some(side)) => beside.row(side, z).cast_const(),
-                _ => at(now, fields.beside(y, offset), z),
-            };
-            temperature[2][index] = match fields.above(z, offset) {
-                Some(z) => at(now, y, z),
-                None if offset < 0 => ghosts.0[0][(-offset) as usize - 1 - z].as_ptr(),
-                None => ghosts.0[1][offset as usize + z - n_z].as_ptr(),
-            };
-        }
-        let around = |field, axis| {
-            let here = at(field, y, z);
-            [-1, 0, 1].map(|offset| match axis {
-                0 => here.wrapping_offset(offset),
-                1 => at(field, fields.beside(y, offset), z),
-                _ => at(field, y, fields.above(z, offset).unwrap_or(z)),
-            })
-        };
+        let around = |field, axis| neighbours(step, field, axis, [y, z]);
         // In the air around it is that of the last cell.
         let diffusivity = |axis| {
-            let here = at(Field::Diffusivity, y, z);
+            let here = fields.row(Field::Diffusivity, y, z).cast_const();
             let n = fields.n_cells[axis];
             let [before, _, behind] = around(Field::Diffusivity, axis);
             let place = [0, y, z][axis];
@@ -195,7 +172,7 @@ impl Row {
         }
         let Level { base, damping, target, .. } = step.levels[z];
         Self {
-            temperature,
+            temperature: temperatures(step, ghosts, [y, z]),
             wind: [0, 1, 2].map(|axis| around(Field::Wind(axis), axis)),
             diffusivity: [0, 1, 2].map(diffusivity),
             open,
@@ -285,6 +262,52 @@ impl Row {
             half.mul_add(from_before + from_behind, carried)
         }
     }
+}
+
+/// Rows of temperature along each axis through row (`y`, `z`), up to [`REACH`] cells to either side.
+fn temperatures(
+    step: &Transport<'_>,
+    ghosts: &Ghosts,
+    [y, z]: [usize; 2],
+) -> [[*const f32; 2 * REACH + 1]; 3] {
+    let fields = step.fields;
+    let at = |y, z| fields.row(Fields::temperature(step.n_steps), y, z).cast_const();
+    let mut temperature = [[at(y, z); 2 * REACH + 1]; 3];
+    for (index, offset) in (-(REACH as isize)..=REACH as isize).enumerate() {
+        temperature[0][index] = at(y, z).wrapping_offset(offset);
+        temperature[1][index] = match (step.beside, fields.side(y, offset)) {
+            (Some(beside), Some(side)) => beside.row(side, z).cast_const(),
+            _ => at(fields.beside(y, offset), z),
+        };
+        temperature[2][index] = match fields.above(z, offset) {
+            Some(z) => at(y, z),
+            None if offset < 0 => ghosts.0[0][(-offset) as usize - 1 - z].as_ptr(),
+            None => ghosts.0[1][offset as usize + z - fields.n_cells[2]].as_ptr(),
+        };
+    }
+    temperature
+}
+
+/// Rows of `field` at row (`y`, `z`) and a cell to either side along `axis`.
+fn neighbours(
+    step: &Transport<'_>,
+    field: Field,
+    axis: usize,
+    [y, z]: [usize; 2],
+) -> [*const f32; 3] {
+    let fields = step.fields;
+    let at = |y, z| fields.row(field, y, z).cast_const();
+    [-1, 0, 1].map(|offset| match axis {
+        0 => at(y, z).wrapping_offset(offset),
+        1 => match (step.beside, fields.side(y, offset)) {
+            // Heat goes through a side with the wind that mass goes with.
+            (Some(beside), Some(side)) if field == Field::Wind(1) => {
+                beside.wind(side, z).cast_const()
+            }
+            _ => at(fields.beside(y, offset), z),
+        },
+        _ => at(y, fields.above(z, offset).unwrap_or(z)),
+    })
 }
 
 /// Gives what lies beyond the ends of a `row` of `n` temperatures its values: those of its other end, or what

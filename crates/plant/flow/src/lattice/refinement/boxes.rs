@@ -18,8 +18,8 @@ pub const WARM_MARGIN: usize = REACH;
 /// Memory of the exchange for each population that leaves a box through a face of a cell (bytes), about: as
 /// measured of a box of 64 × 32 × 32 cells on the ground.
 const BYTES_OF_LINK: u64 = 125;
-/// Memory of the exchange of temperature for each face of a cell of a box's sides (bytes), about, with what is
-/// given beyond it, as measured likewise.
+/// Memory of the exchange of temperature for each face of a cell of a box's sides (bytes), about, with what
+/// is given beyond it, as measured likewise.
 const BYTES_OF_WARM_FACE: u64 = 190;
 
 /// A box of cells of half the size, moved by steps of half the length.

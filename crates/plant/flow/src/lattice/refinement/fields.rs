@@ -59,9 +59,9 @@ impl FieldSource for Refined {
 }
 
 impl Refined {
-    /// Potential temperature (K) at each of `positions` (m) into `temperatures`, of the same length: trilinear
-    /// between cell centres of the finest box that holds them all around a position; false, and nothing is
-    /// written, where the air has none.
+    /// Potential temperature (K) at each of `positions` (m) into `temperatures`, of the same length:
+    /// trilinear between cell centres of the finest box that holds them all around a position; false, and
+    /// nothing is written, where the air has none.
     pub fn sample_temperature(&self, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
         let mut one_by_one = positions.iter().zip(temperatures);
         one_by_one.all(|(position, temperature)| self.grid.temperature(*position, temperature))

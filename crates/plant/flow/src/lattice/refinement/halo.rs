@@ -110,9 +110,9 @@ impl Place {
     }
 }
 
-/// Slope upwards of a value between that `below` and that `above` it, of which `both` are there or one is the
-/// value `here` itself: what goes on with it makes no new extremes, so that no cold air lies at the foot of an
-/// inversion above what is warmer (van Leer 1977, J. Comput. Phys. 23, 276).
+/// Slope upwards of a value between that `below` and that `above` it, of which `both` are there or one is
+/// the value `here` itself: what goes on with it makes no new extremes, so that no cold air lies at the foot
+/// of an inversion above what is warmer (van Leer 1977, J. Comput. Phys. 23, 276).
 fn slope_upwards([below, here, above]: [f32; 3], both: bool) -> f32 {
     if !both {
         return above - below;

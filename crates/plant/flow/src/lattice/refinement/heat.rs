@@ -7,8 +7,9 @@
 //!
 //! What passes an end is what the box's cells have let through: the cell around that has counted with a flux
 //! of its own has that taken back, and gets the sum of the short steps' instead (Berger, Colella 1989, J.
-//! Comput. Phys. 82, 64). So heat is kept to rounding, as mass is. Fluxes count from the same temperature on
-//! both sides.
+//! Comput. Phys. 82, 64). So heat is kept to rounding where levels are alike, as mass is. At ends along x and
+//! y fluxes count from the same temperature on both sides; at the lower and the upper end from the level's
+//! outside.
 
 use super::halo::{End, Halo, Place};
 use super::heat;
@@ -277,8 +278,8 @@ impl Gates {
         }
     }
 
-    /// Counts `sense` times what the fluxes of a step bring the cells outside, made of themselves and the last
-    /// ones of that `grid` (0 around, 1 the box) with `weights`.
+    /// Counts `sense` times what the fluxes of a step bring the cells outside, made of themselves and the
+    /// last ones of that `grid` (0 around, 1 the box) with `weights`.
     fn pass(&mut self, grid: usize, sense: f32, [this, before]: [f32; 2]) {
         let Self { short, last, owed, fluxes, .. } = self;
         let faces = short.iter().step_by(4).zip(owed);

@@ -9,7 +9,8 @@ use super::*;
 use crate::lattice::atmosphere::{Atmosphere, Damping, Driving, Heating, Perturbation, Reference};
 use std::f64::consts::TAU;
 
-/// A cell: temperature above the reference (K), centre (m), volume (m³) and density (that of undisturbed air).
+/// A cell: temperature above the reference (K), centre (m), volume (m³) and density (that of undisturbed
+/// air).
 struct Cell {
     temperature: f64,
     centre: Vector3,

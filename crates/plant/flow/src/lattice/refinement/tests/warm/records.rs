@@ -3,8 +3,8 @@
 use super::*;
 use crate::lattice::Backend;
 
-/// An atmosphere with gusts over a rough ground that cools, boxes in it: two in one another on the ground, and
-/// one aloft.
+/// An atmosphere with gusts over a rough ground that cools, boxes in it: two in one another on the ground,
+/// and one aloft.
 fn gusty(threads: usize) -> (Refined, [PointForce; 3]) {
     let mut settings =
         LatticeSettings::new(Vector3::new(-40.0, -70.0, 0.0), 10.0, [28, 14, 14], 0.1, 10.0);

@@ -88,8 +88,8 @@ fn wind_turns_alike_within_a_box_and_without() {
         let off = found.iter().map(|wind| (*wind - expected).length()).fold(0.0, f64::max);
         let jump = found.iter().map(|wind| (*wind - found[0]).length()).fold(0.0, f64::max);
         println!("{} s: off by {off:e}, jump {jump:e}", air.time());
-        // What is told lacks half of the last step's force, 3e-5 on coarse cells and 8e-6 on the finest; where
-        // both meet, whatever pushes all air leaves as much.
+        // What is told lacks half of the last step's force, 3e-5 on coarse cells and 8e-6 on the finest;
+        // where both meet, whatever pushes all air leaves as much.
         assert!(off < 1.6e-4 && jump < 1.6e-4, "{} s: off by {off}, jump {jump}", air.time());
     }
 }
