@@ -15,8 +15,8 @@ use formats::turbulence_box;
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 use study::precursor::{PrecursorOptions, PrecursorOutcome, precursor};
 use study::{Outcome, Outputs, Prepared, Silent, StudyError, StudyOptions};
 use tempfile::TempDir;
@@ -162,6 +162,9 @@ fn left(run: &Path) -> Vec<Vec<u8>> {
 /// Stops a study with `keys` half-way and resumes it on other threads, and compares with one at once; gives
 /// the files of wind in its manifest.
 fn stopped_and_resumed(folder: &Path, keys: &[&str]) -> Vec<String> {
+    // One at a time may be stopped.
+    static STOPPING: Mutex<()> = Mutex::new(());
+    let _alone = STOPPING.lock();
     let on = |threads: usize, output: &str| StudyOptions {
         output: Some(folder.join(output)),
         overrides: keys
@@ -195,7 +198,7 @@ fn a_stopped_run_goes_on_in_the_same_air_on_any_threads() {
     let files = stopped_and_resumed(folder.path(), &["flow.sides=\"open\""]);
     let read = ["case.toml", "planes.bts", "precursor.json", "statistics.nc", "temperature.nc"];
     assert_eq!(files, read.map(|name| format!("layer/{name}")));
-    // One after the other, for one study at a time may be stopped: beside a precursor that goes on.
+    // Beside a precursor that goes on.
     let beside = ["wind.precursor_wind=\"beside\"", "flow.sides=\"open\""];
     let folder = study();
     let files = stopped_and_resumed(folder.path(), &beside);

@@ -190,18 +190,11 @@ fn coming_back<S: Simd>(inside: &Moments<S>, outward: S) -> S {
     one - (one - inward.maximum(zero)).maximum(zero)
 }
 
-/// The velocity `across` of cells inside, of which what blows in is held below its share of the inflow's
-/// `wind`: the more, the closer it comes.
+/// The velocity `across` of cells inside, which blows in with no more than its share of the inflow's `wind`.
 #[inline(always)]
 fn no_steeper<S: Simd>(across: S, outward: S, wind: &[S; 3]) -> S {
-    let (zero, one) = (S::splat(0.0), S::splat(1.0));
-    // Not zero in still air.
-    let squared = wind[0].mul_add(wind[0], wind[1].mul_add(wind[1], S::splat(1e-12)));
-    let most = S::splat(STEEPEST) * squared.sqrt();
-    let out = outward * across;
-    let inward = (zero - out).maximum(zero);
-    let ratio = inward.divide(most);
-    outward * (out.maximum(zero) - inward.divide(ratio.mul_add(ratio, one).sqrt()))
+    let squared = wind[0].mul_add(wind[0], wind[1] * wind[1]);
+    outward * (outward * across).maximum(S::splat(-STEEPEST) * squared.sqrt())
 }
 
 /// Wind of the inflow in the step at the halo cells from `x`.
