@@ -227,15 +227,14 @@ impl Around {
         };
         let whole = if axis == 0 || !self.walls[axis][1] { "" } else { ", or make it reach them" };
         PlanError::BoxOutside {
-            number: one.number.to_string(),
+            number: one.number.to_string().into(),
             key: own,
             axis: AXES[axis],
             low,
             high,
-            around: around.into(),
+            around: format!("{around}: {} cells", self.margin).into(),
             least: start + if axis == 2 { 0.0 } else { margin },
             most: start + length * self.spacing - margin - kept,
-            margin: self.margin,
             fix: format!("lower its {own}, or raise {further}{whole}").into(),
         }
     }
@@ -311,7 +310,7 @@ impl Rotor<'_> {
         let missing_diameters = (share * missing / diameter * 100.0).ceil() / 100.0;
         PlanError::RotorAtEdge {
             name: self.name.to_owned(),
-            number: one.number.to_string(),
+            number: one.number.to_string().into(),
             key,
             end,
             missing,

@@ -174,11 +174,11 @@ pub enum PlanError {
     },
     /// A box of finer cells reaches too far.
     #[error(
-        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around}: {margin} cells before its sides and before the cells at the outlet that still eddies; {fix}"
+        "the box flow.refinement.{number} spans {axis} = {low:.0} to {high:.0} m, and has room from {least:.0} to {most:.0} m in {around} before its sides and before the cells at the outlet that still eddies; {fix}"
     )]
     BoxOutside {
         /// Its number.
-        number: String,
+        number: Box<str>,
         /// Key that decides.
         key: &'static str,
         /// Axis, in words.
@@ -187,14 +187,12 @@ pub enum PlanError {
         low: f64,
         /// As above.
         high: f64,
-        /// What is around it, in words.
+        /// What is around it and how many cells are to lie between, in words.
         around: Box<str>,
         /// Ends that it may have (m).
         least: f64,
         /// As above.
         most: f64,
-        /// Cells between.
-        margin: usize,
         /// What to change.
         fix: Box<str>,
     },
@@ -226,7 +224,7 @@ pub enum PlanError {
         /// Turbine.
         name: String,
         /// Number of the box.
-        number: String,
+        number: Box<str>,
         /// Key that decides.
         key: &'static str,
         /// Where it ends too early, in words.

@@ -129,7 +129,7 @@ mod tests {
         // Fluctuations whose mean over a row of all planes is zero.
         let n_points = [4, 6, 5];
         let n: usize = n_points.iter().product();
-        let one = |k: usize| if k % 2 == 0 { 0.7 } else { -0.7 };
+        let one = |k: usize| if k.is_multiple_of(2) { 0.7 } else { -0.7 };
         let values = || (0..n).map(one).collect::<Vec<f32>>();
         let components = [values(), values(), values()];
         let turbulence = TurbulenceBox::new(n_points, [5.0, 10.0, 20.0], components);
