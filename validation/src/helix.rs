@@ -2,12 +2,14 @@
 //! published large-eddy figures.
 
 mod in_atmosphere;
+mod joined;
 mod pitch;
 mod profile;
 mod trials;
 
 pub use in_atmosphere::helix_in_atmosphere;
 pub(crate) use in_atmosphere::wind_of_precursor;
+pub use joined::joined_in_atmosphere;
 pub use pitch::helix_pitch;
 pub use profile::wake_profile;
 pub use trials::{wake_grid, wake_trials};

@@ -18,9 +18,9 @@ const SMALLER: [&str; 7] = [
     "time.record=4800",
     "planes.width=1700",
 ];
-/// What the studies share in its planes, and in Mann's wind.
-const IN_PLANES: [&str; 3] =
-    ["wind.turbulence_intensity=0.05", "wind.roughness_length=0.001", "wind.beyond_planes=mean"];
+/// What the studies share in its atmosphere, and in Mann's wind.
+const IN_ATMOSPHERE: [&str; 2] =
+    ["wind.turbulence_intensity=0.05", "flow.ground={ roughness_length = 0.001 }"];
 const IN_BOX: [&str; 4] = [
     "wind.turbulence_intensity=0.055",
     "wind.shear_exponent=0.08",
@@ -49,8 +49,8 @@ pub fn helix_in_atmosphere() -> Vec<Row> {
         Ok(done) => done,
         Err(problem) => return failure(problem),
     };
-    let planes = format!("wind.planes=\"{}\"", folder.join("planes.bts").display());
-    let keys = || [planes.as_str()].into_iter().chain(IN_PLANES);
+    let itself = format!("wind.precursor=\"{}\"", folder.display());
+    let keys = || [itself.as_str()].into_iter().chain(IN_ATMOSPHERE);
     let mut found = of_wind(&wind);
 
     let trial =
@@ -88,9 +88,8 @@ fn of_wind(wind: &PrecursorResult) -> Vec<Row> {
         });
     let (middle, reach) = INTENSITY;
     let drift = wind.record.as_ref();
-    let at_hub = drift.map_or(f64::NAN, |drift| 0.5 * (drift.hub_speed[0] + drift.hub_speed[1]));
     vec![
-        row("speed at the hub", at_hub, HUB_WIND, Within(0.1), "m/s", CASE_ITSELF),
+        row("speed at the hub", speed_at_hub(wind), HUB_WIND, Within(0.1), "m/s", CASE_ITSELF),
         row("least intensity over the rotor", least, middle, Within(reach), "%", SOURCE),
         row("greatest intensity over the rotor", greatest, middle, Within(reach), "%", SOURCE),
         row("depth of the layer", wind.boundary_layer_height, 700.0, AtMost, "m", CASE_ITSELF),
@@ -105,8 +104,14 @@ fn of_wind(wind: &PrecursorResult) -> Vec<Row> {
     ]
 }
 
+/// Mean speed at the hub (m/s) over the record of `wind`.
+pub(super) fn speed_at_hub(wind: &PrecursorResult) -> f64 {
+    let record = wind.record.as_ref();
+    record.map_or(f64::NAN, |record| 0.5 * (record.hub_speed[0] + record.hub_speed[1]))
+}
+
 /// Turbulence intensity (–) at `height` (m), linear between the levels of `profile`.
-fn intensity_at(profile: &[ProfileRow], height: f64) -> f64 {
+pub(super) fn intensity_at(profile: &[ProfileRow], height: f64) -> f64 {
     let next = profile.partition_point(|level| level.height < height);
     let (Some(above), Some(below)) = (profile.get(next), next.checked_sub(1)) else {
         return f64::NAN;

@@ -140,7 +140,7 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "synchronised-offshore",
         file: include_str!("../../../../cases/synchronised-offshore.toml"),
-        minutes: 24.0,
+        minutes: 36.0,
         after: Some("precursor-seed-000"),
     },
 ];
