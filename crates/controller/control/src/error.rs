@@ -68,6 +68,22 @@ pub enum ControlError {
         /// Control interval (s).
         control: f64,
     },
+    /// Noise that the pitch actuator cannot follow.
+    #[error(
+        "noise_amplitude_deg = {amplitude_deg} up to noise_to_hz = {frequency} Hz asks for {asked_deg:.1}°/s of pitch, the actuator has {most_deg:.1}°/s: lower noise_to_hz to {most_frequency:.2} Hz or less, or the amplitude"
+    )]
+    NoiseTooFast {
+        /// Amplitude of the noise (deg).
+        amplitude_deg: f64,
+        /// Upper end of its band (Hz).
+        frequency: f64,
+        /// Pitch rate of a wave of that amplitude and frequency (deg/s).
+        asked_deg: f64,
+        /// The actuator's fastest (deg/s).
+        most_deg: f64,
+        /// Upper end of a band that it can follow, rounded down (Hz).
+        most_frequency: f64,
+    },
     /// Nothing runs on a turbine that is not there.
     #[error("the turbine is not there in this run")]
     NotThere,

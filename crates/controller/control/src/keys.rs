@@ -117,9 +117,13 @@ pub(crate) const PHASE_RANGE: Holds = from(-360.0, 360.0);
 
 /// What about the key `start` in `values` cannot be in a run of `duration` (s).
 pub(crate) fn starts_too_late(values: &Values, duration: f64) -> Option<Objection> {
-    let start = values.number("start");
+    too_late("start", values.number("start"), duration)
+}
+
+/// Why `start` (s), the value of `key`, cannot be in a run of `duration` (s), where it cannot.
+pub(crate) fn too_late(key: &'static str, start: f64, duration: f64) -> Option<Objection> {
     (start >= duration).then(|| Objection {
-        key: Some("start"),
+        key: Some(key),
         message: format!(
             "= {start} s is not before the end of the run, `time.duration` = {duration} s"
         ),

@@ -79,6 +79,9 @@ fn fix_of(error: &SynthesisError) -> &'static str {
         SynthesisError::UnstableModel(_) => {
             "identify a model of another order, of samples further apart, or without its delay (`output_delay_s`)"
         }
+        SynthesisError::DirectDisturbance => {
+            "give [performance] as `numerator` and `denominator` whose numerator has the lower order, for an H2 norm wants a weight that falls off, or take method = \"h-infinity\" (--weights)"
+        }
         _ => "change the weight that is named (--weights), or identify a model of lower order",
     }
 }

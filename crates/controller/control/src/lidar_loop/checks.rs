@@ -52,7 +52,7 @@ pub(super) fn of_family(schedule: &Schedule, members: &[String], place: &Place) 
 }
 
 /// Why the lidar that `values` name shows no wake at `place`, where it does not.
-pub(super) fn no_lidar(values: &Values, place: &Place) -> Option<Objection> {
+pub(crate) fn no_lidar(values: &Values, place: &Place) -> Option<Objection> {
     let (name, turbine) = (values.word("lidar"), place.turbine);
     let (message, label, fix) = match place.sensor(name).filter(|sensor| sensor.kind == "lidar") {
         None => (

@@ -22,6 +22,7 @@ mod findings;
 mod kind;
 mod watch;
 
+pub(crate) use checks::no_lidar;
 pub use findings::MEAN_HUB_VORTEX;
 pub(crate) use findings::{CHANNELS, findings};
 pub use kind::LIDAR_LOOP;

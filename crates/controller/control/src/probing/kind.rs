@@ -8,11 +8,11 @@ use crate::error::ControlError;
 use crate::excitation::Excitation;
 use crate::keys::{
     AMPLITUDE, AZIMUTH_OFFSET, BASE, LIDAR, SENSE, START, STROUHAL, TILT_PHASE, VORTEX_CENTRE,
-    VORTEX_FILTER, VORTEX_INTERVAL, sense, starts_too_late,
+    VORTEX_FILTER, VORTEX_INTERVAL, sense, starts_too_late, too_late,
 };
 use crate::kind::{Control, ControllerKind, Place, Site};
 use crate::library::Hosted;
-use crate::lidar_loop::{CHANNELS, Watch, findings};
+use crate::lidar_loop::{CHANNELS, Watch, findings, no_lidar};
 use crate::outcome::{MissingChannel, Outcome, TurbineRecord};
 use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Objection, Table, Values, above, from, key};
@@ -96,7 +96,13 @@ impl ControllerKind for ProbingKind {
             label: "no band is left",
             fix: "lower `noise_from_hz`, or raise `noise_to_hz`".to_owned(),
         });
-        starts_too_late(values, place.duration).into_iter().chain(band).collect()
+        let noise = values.optional_number("noise_start");
+        let late = [
+            starts_too_late(values, place.duration),
+            noise.and_then(|start| too_late("noise_start", start, place.duration)),
+            no_lidar(values, place),
+        ];
+        late.into_iter().flatten().chain(band).collect()
     }
 
     fn build(&self, control: &Control, site: &Site) -> Result<Box<dyn Controller>, ControlError> {
@@ -104,10 +110,12 @@ impl ControllerKind for ProbingKind {
         let frame = HelixFrame { sense: sense(values), rate: site.rate(values.number("strouhal")) };
         let band = ["noise_from_hz", "noise_to_hz"].map(|key| TAU * values.number(key));
         let start = values.number("start");
+        let noise = values.angle("noise_amplitude_deg");
+        follows(noise, band[1], site.rotor.pitch_actuator.maximum_rate)?;
         let probing = Probing {
             frame,
             helix: frame.open_helix(values.angle("amplitude_deg"), values.angle("phase_deg")),
-            noise: values.angle("noise_amplitude_deg"),
+            noise,
             azimuth_offset: values.angle("azimuth_offset_deg"),
             starts: [start, values.optional_number("noise_start").unwrap_or(start)],
             sources: [0, 1]
@@ -133,5 +141,41 @@ impl ControllerKind for ProbingKind {
 
     fn outcome(&self, _: &Control, record: &dyn TurbineRecord) -> Result<Outcome, MissingChannel> {
         Ok(Outcome { findings: findings(record)?, ..Outcome::default() })
+    }
+}
+
+/// Whether an actuator of the rate `most` (rad/s) follows a wave of the size `noise` (rad) at the upper end of
+/// its band, `upper` (rad/s).
+///
+/// # Errors
+/// [`ControlError::NoiseTooFast`].
+fn follows(noise: f64, upper: f64, most: f64) -> Result<(), ControlError> {
+    let asked = noise * upper;
+    if asked <= most {
+        return Ok(());
+    }
+    Err(ControlError::NoiseTooFast {
+        amplitude_deg: noise.to_degrees(),
+        frequency: upper / TAU,
+        asked_deg: asked.to_degrees(),
+        most_deg: most.to_degrees(),
+        // Rounded down, so that what is printed can be taken.
+        most_frequency: (100.0 * most / noise / TAU).floor() / 100.0,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_no_faster_than_the_actuator() {
+        let [noise, rate] = [5.0_f64, 8.0].map(f64::to_radians);
+        assert!(follows(noise, TAU * 0.25, rate).is_ok());
+        let error = follows(noise, TAU * 10.0, rate).expect_err("314°/s").to_string();
+        assert!(error.contains("asks for 314.2°/s") && error.contains("has 8.0°/s"), "{error}");
+        assert!(error.contains("noise_to_hz to 0.25 Hz or less"), "{error}");
+        // No noise is never too fast.
+        assert!(follows(0.0, TAU * 10.0, rate).is_ok());
     }
 }

@@ -84,14 +84,16 @@ impl Subspace {
         &self.singular_values
     }
 
-    /// The order, no higher than `most`, after which singular values fall by the largest factor.
+    /// The order, no higher than `most`, after which singular values fall by the largest factor. The last of
+    /// them falls to none, and is no order.
     pub fn largest_gap(&self, most: usize) -> usize {
         let floor = LEAST_SINGULAR * self.singular_values[0];
         let fall = |order: usize| {
-            let below = self.singular_values.get(order).copied().unwrap_or(0.0);
+            let below = self.singular_values.get(order).copied().unwrap_or(floor);
             self.singular_values[order - 1].max(floor) / below.max(floor)
         };
-        let orders = 1..=most.clamp(1, self.singular_values.len());
+        let last = self.singular_values.len().saturating_sub(1).max(1);
+        let orders = 1..=most.clamp(1, last);
         // The lowest of equal ones.
         orders.rev().max_by(|a, b| fall(*a).total_cmp(&fall(*b))).expect("at least one order")
     }

@@ -115,6 +115,16 @@ fn closed_loop(system: &StateSpace, gain: &Mat<f64>, n_samples: usize, strength:
     record(inputs, outputs)
 }
 
+/// A short window leaves few singular values: the end of them is no fall.
+#[test]
+fn the_order_is_found_in_short_windows_too() {
+    let record = experiment(&oscillators(2), 2, 6000, Noise::White(20.0));
+    for window in [6, 8, 10] {
+        let subspace = Subspace::new(&record, settings(window)).expect("a good record");
+        assert_eq!(subspace.largest_gap(20), 2, "window {window}");
+    }
+}
+
 /// In a closed loop the input depends on past noise, which would bias methods that take it not to; and the
 /// noise's own model comes out as well.
 #[test]

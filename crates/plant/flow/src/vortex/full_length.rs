@@ -56,11 +56,15 @@ impl FreeWake {
     /// The course of rotor number `index`; none before it has a wake, or when that stands still.
     fn course(&self, index: usize) -> Option<Course> {
         let sheets = || self.sheets.iter().filter(|sheet| sheet.owner[0] == index);
+        // A step that was refused leaves blades without wakes.
+        if sheets().any(|sheet| sheet.near.n_rows() < 2) {
+            return None;
+        }
         let n_blades = sheets().count() as f64;
         let hub = sheets().map(|sheet| sheet.line()[0]).sum::<Vector3>() / n_blades;
         let (mut turn, mut speed) = (0.0, 0.0);
         for sheet in sheets() {
-            let row = sheet.near.n_rows().checked_sub(2)?;
+            let row = sheet.near.n_rows() - 2;
             let angle = |row: usize| {
                 let tip = sheet.near.row(row)[sheet.n_elements()] - hub;
                 tip.z.atan2(tip.y)

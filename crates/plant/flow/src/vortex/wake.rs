@@ -14,8 +14,11 @@ use crate::{FlowError, FlowSolver, WindField};
 use basis::{Answer, PointForce, Vector3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Farthest that a rotor may turn in a step (rad): beyond it the wake is no helix.
+/// Farthest that a rotor may turn in a step (rad) at the speed that it is expected to have: beyond it the wake
+/// is no helix.
 pub const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
+/// The same of any step made (rad), for the speed of a rotor swings about the expected one.
+const FARTHEST_STEP: f64 = 48.0 * std::f64::consts::PI / 180.0;
 /// Speed that no air has that these equations hold for (m/s): sound.
 const FASTEST: f64 = 340.0;
 /// Lowest that a node of a wake over ground comes (m).
@@ -174,11 +177,11 @@ impl FreeWake {
     /// [`FlowError::TurnedTooFar`] where a rotor turns too far in a step of `duration` (s) from now.
     fn check_turns(&self, duration: f64) -> Result<(), FlowError> {
         let farthest = self.rotors.iter().max_by(|a, b| a.turn().total_cmp(&b.turn()));
-        let Some(rotor) = farthest.filter(|rotor| rotor.turn() > FARTHEST_TURN) else {
+        let Some(rotor) = farthest.filter(|rotor| rotor.turn() > FARTHEST_STEP) else {
             return Ok(());
         };
         let (time, position) = (self.wind.time() + duration, rotor.middle());
-        Err(FlowError::TurnedTooFar { time, position, turn: rotor.turn(), most: FARTHEST_TURN })
+        Err(FlowError::TurnedTooFar { time, position, turn: rotor.turn(), most: FARTHEST_STEP })
     }
 
     /// On return segments and field are those of the rings.

@@ -90,6 +90,10 @@ fn of_carrier(values: &Values) -> Vec<Objection> {
         let message = "must be above 0 for a lidar on the nacelle that looks upwind: it stands behind the rotor, and sees between the blades".to_owned();
         let fix = "give its distance behind the rotor, or take mount = \"hub\"";
         objections.push(objection("downwind", message, "not on the nacelle", fix));
+    } else if !is_upwind && values.number("downwind") < 0.0 {
+        let message = "is before the rotor for a lidar that looks downwind: it would see its wake through the blades".to_owned();
+        let fix = "take 0 or more, behind the rotor's centre";
+        objections.push(objection("downwind", message, "looks through its rotor", fix));
     }
     objections
 }

@@ -123,3 +123,27 @@ fn a_preview_needs_a_lidar_that_looks_upwind_far_enough() {
         assert!(said.contains(expected), "{more}\nexpected {expected}\nfound    {said}");
     }
 }
+
+#[test]
+fn a_probing_turbine_sees_its_wake() {
+    let probing = |keys: &str| {
+        format!(
+            "{{ kind = \"probing\", sense = \"ccw\", amplitude_deg = 3.0, strouhal = 0.3{keys} }}"
+        )
+    };
+    read(&probing("")).expect("a sound case");
+    for (keys, expected) in [
+        (", lidar = \"mast\"", "lidar` = \"mast\" names no lidar of T1; add sensors.mast"),
+        (", noise_start = 1e6", "noise_start` = 1000000 s is not before the end of the run"),
+    ] {
+        let said = read(&probing(keys)).expect_err(keys);
+        assert!(said.contains(expected), "expected {expected}\nfound    {said}");
+    }
+    let before =
+        with(&probing("")).replace("kind = \"lidar\" }", "kind = \"lidar\", downwind = -3.0 }");
+    let said = parse("small.toml", &before, &[]).expect_err("through the rotor").to_lines();
+    assert!(
+        said.contains("downwind` is before the rotor for a lidar that looks downwind"),
+        "{said}"
+    );
+}

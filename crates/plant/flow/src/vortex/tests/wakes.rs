@@ -316,6 +316,10 @@ fn a_rotor_that_turns_too_far_in_a_step_ends_the_run() {
         }
         now
     };
+    // Refused at once, it has no wake whose cost could be told.
+    let mut none = wake(settings());
+    none.advance(INTERVAL, &turning(6)).expect_err("52°");
+    none.reach_full_length();
     let mut free = wake(settings());
     assert_eq!(free.advance(INTERVAL, &turning(5)), Ok(()));
     let error = free.advance(INTERVAL, &turning(6)).expect_err("0.9 rad are 52°");
