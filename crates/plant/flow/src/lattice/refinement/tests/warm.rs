@@ -3,6 +3,7 @@
 mod carried;
 mod layers;
 mod records;
+mod starts;
 mod swings;
 
 use super::*;
