@@ -2,6 +2,7 @@
 
 mod carried;
 mod layers;
+mod orders;
 mod records;
 mod starts;
 mod swings;
