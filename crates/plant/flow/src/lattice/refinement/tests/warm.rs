@@ -1,6 +1,7 @@
 //! Temperature in boxes: what stays, what is kept, what is given, and the same bits.
 
 mod carried;
+mod cooled;
 mod layers;
 mod orders;
 mod records;
