@@ -234,6 +234,28 @@ pub enum PlanError {
         /// What the key lacks (diameters of the first turbine).
         missing_diameters: f64,
     },
+    /// A ground that is too rough for the cells on it.
+    #[error(
+        "flow.ground has a roughness length of {roughness_length} m, and the lowest cells of {place} bear {highest:.3} m at most: the wind follows the logarithmic law at their middle, which is to lie well above it; lower it, or {fix}"
+    )]
+    RoughGround {
+        /// Roughness length given (m).
+        roughness_length: f64,
+        /// Greatest one (m).
+        highest: f64,
+        /// Table whose cells they are.
+        place: &'static str,
+        /// What else to change.
+        fix: &'static str,
+    },
+    /// Cells that the lattice does not take for another reason.
+    #[error("the lattice does not take the cells of {place}: {reason}")]
+    Cells {
+        /// Table whose cells they are.
+        place: &'static str,
+        /// What it says, with what would do.
+        reason: Box<str>,
+    },
     /// A turbine without its model.
     #[error("turbine {name} has the model `{model}`, which was not loaded")]
     UnknownModel {
@@ -265,6 +287,8 @@ impl PlanError {
             }
             Self::BoxesMeet { second, .. } => vec!["flow", "refinement", second],
             Self::TooManyLevels { .. } => vec!["flow", "refinement"],
+            Self::RoughGround { .. } => vec!["flow", "ground", "roughness_length"],
+            Self::Cells { place, .. } => place.split('.').collect(),
             Self::UnknownModel { name, .. } => vec!["turbine", name, "model"],
         }
     }

@@ -5,12 +5,14 @@ use crate::air::Air;
 use crate::assemble::lattice_settings;
 use crate::case::{Case, Flow, TurbulenceModel, Wind};
 use crate::domain::{self, SMEARING_CELLS, Sides};
-use crate::plan::{self, Plan};
+use crate::plan::{self, Layout, Plan, PlanError};
 use crate::refinement;
 use crate::self_check::Tunnel;
+use crate::wind::Site;
 use basis::keys::Key;
-use flow::lattice::Lattice;
-use flow::lattice::refinement::Refined;
+use flow::lattice::atmosphere::Atmosphere;
+use flow::lattice::refinement::{Refined, Refinement, RefinementError, check};
+use flow::lattice::{Lattice, LatticeError};
 use std::f64::consts::FRAC_PI_4;
 use turbine::blockage::equivalent_speed_ratio;
 
@@ -26,6 +28,9 @@ const EDDY_BYTES: u64 = 20;
 /// have it.
 const TEMPERATURE_BYTES: u64 = 34;
 const WARM_EDDY_BYTES: u64 = 4;
+
+/// Temperature of an atmosphere of which nothing is known yet (K).
+const ANY_TEMPERATURE: f64 = 288.15;
 
 /// Those of a box of cells, and that of finer ones in it.
 static KEYS: [Key; domain::KEYS.len() + 1] = {
@@ -61,7 +66,7 @@ pub static LATTICE: SolverKind = SolverKind {
     objections,
     warnings,
     sound_speed: |plan| Some(plan::LATTICE_SOUND_SPEED * plan.spacing / plan.base_interval()),
-    plan: plan::in_a_box,
+    plan: lay_out,
     reach: |_, _| 0.0,
     memory,
     less_memory: "flow.cells_per_diameter, or the domain: flow.width_diameters, flow.height_diameters",
@@ -70,6 +75,38 @@ pub static LATTICE: SolverKind = SolverKind {
     begin_alone,
     updates_alone: |tunnel, diameter| tunnel.n_cells(diameter).iter().product::<usize>() as f64,
 };
+
+fn lay_out(case: &Case, layout: &Layout) -> Result<Plan, PlanError> {
+    let plan = plan::in_a_box(case, layout)?;
+    check_cells(case, &plan)?;
+    Ok(plan)
+}
+
+/// Whether the lattice takes the domain of `plan` and its boxes: what it would refuse when a run begins. Room
+/// around boxes is seen to where they are laid out, with a fix for each. None is too thin for temperature: a
+/// box has a diameter each way, and that has eight cells.
+///
+/// # Errors
+/// [`PlanError`] with the key that decides.
+fn check_cells(case: &Case, plan: &Plan) -> Result<(), PlanError> {
+    let mut settings = lattice_settings(&Site { case, plan, models: &[], surroundings: None });
+    // Which atmosphere it is the precursor tells later; that there is one decides on the boxes' room now.
+    settings.atmosphere = case.wind.precursor.as_ref().map(|_| Atmosphere::new(ANY_TEMPERATURE));
+    // Threads have a check of their own, which knows where they were asked for.
+    settings.threads = None;
+    let of = |boxes: &[Refinement], place, fix| {
+        check(&settings, boxes).map_err(|error| match error {
+            RefinementError::Lattice(LatticeError::Roughness { roughness_length, highest }) => {
+                // To the millimetre below, so that what is printed can be taken.
+                let highest = (highest * 1e3).floor() * 1e-3;
+                PlanError::RoughGround { roughness_length, highest, place, fix }
+            }
+            error => PlanError::Cells { place, reason: error.to_string().into() },
+        })
+    };
+    of(&[], "flow", "lower flow.cells_per_diameter")?;
+    of(&plan.boxes, "flow.refinement", "lower flow.cells_per_diameter, or leave out a box")
+}
 
 fn begin(start: Start) -> Result<Air, SolverError> {
     let settings = lattice_settings(&start.site);

@@ -25,7 +25,7 @@ impl Lattice {
                     sums.add(&row, n_x);
                 }
                 let unit = self.scaling().si_velocity_unit();
-                let height = (z as f64 + 0.5) * self.settings().spacing;
+                let height = self.floor + (z as f64 + 0.5) * self.settings().spacing;
                 let mut level = sums.statistics((n_x * n_y) as f64, unit);
                 level.height = height;
                 level.temperature += atmosphere.reference_temperature;

@@ -36,6 +36,7 @@ mod fields;
 mod halo;
 mod heat;
 mod paths;
+mod start;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -110,7 +111,9 @@ impl Refined {
         boxes::check_air(&settings, boxes)?;
         let beyond = boxes::beyond(&settings);
         let height = settings.spacing * settings.n_cells[2] as f64;
-        let grid = Grid::new(settings, &Joint::none(height), boxes, &beyond, &inflow)?;
+        let joint = Joint::none(height);
+        let lattice = Lattice::joined(settings, &joint, Arc::clone(&inflow))?;
+        let grid = Grid::new(lattice, &joint, boxes, &beyond, &inflow)?;
         Ok(Self { span: 1 << grid.depth(), grid, n_steps: 0 })
     }
 
@@ -119,7 +122,9 @@ impl Refined {
         &self.grid.lattice
     }
 
-    /// All grids, each before those in it.
+    /// All grids, each before those in it. The wind of its cells under boxes means nothing, nor does what its
+    /// [statistics](Lattice::level_statistics) make of it; their temperature is the mean over those in them
+    /// after each of its steps.
     pub fn lattices(&self) -> Vec<&Lattice> {
         let mut all = Vec::new();
         self.grid.list(&mut all);
@@ -203,15 +208,15 @@ impl FlowSolver for Refined {
 }
 
 impl Grid {
+    /// That of `lattice`, which is at its start and lies as `joint` says, with `boxes` in it.
     fn new(
-        settings: LatticeSettings,
+        mut lattice: Lattice,
         joint: &Joint,
         boxes: &[Refinement],
         beyond: &Beyond,
         inflow: &Arc<dyn Inflow>,
     ) -> Result<Self, RefinementError> {
-        let margin = boxes::margin(settings.atmosphere.is_some());
-        let mut lattice = Lattice::joined(settings, joint, Arc::clone(inflow))?;
+        let margin = boxes::margin(lattice.settings().atmosphere.is_some());
         boxes::check_apart(boxes, lattice.n_cells(), margin)?;
         let boxes = boxes
             .iter()
@@ -273,7 +278,12 @@ impl Inner {
             targets: is_warm.then(|| place.targets(heat(around))),
             ..*joint
         };
-        let mut grid = Grid::new(settings, &joint, &one.within, &own, inflow)?;
+        let is_told = inflow.sample_temperature(0.0, &[settings.origin], &mut [0.0]);
+        let mut lattice = Lattice::joined(settings, &joint, Arc::clone(inflow))?;
+        if is_warm && is_told {
+            start::join(&place, around, &mut lattice);
+        }
+        let mut grid = Grid::new(lattice, &joint, &one.within, &own, inflow)?;
         let heat = is_warm.then(|| HeatCoupling::new(&place, around, &mut grid.lattice));
         let around = exchange(around);
         let paths = Paths::new(one.covered(), n_cells, beyond, around.directions());

@@ -70,12 +70,15 @@ impl Lattice {
         let Some(atmosphere) = &self.settings().atmosphere else { return false };
         for (position, temperature) in positions.iter().zip(temperatures) {
             let (low, high, weight) = self.cell_cube(*position);
-            let departures = corners(low, high).map(|[x, y, z]| {
-                self.engine.temperature(self.row_at(y, z)).map_or(f32::NAN, |row| row[x])
-            });
+            let departures = corners(low, high).map(|cell| self.warmth(cell));
             *temperature = atmosphere.reference_temperature + interpolate(&departures, weight);
         }
         true
+    }
+
+    /// Temperature of a cell above the reference (K), not a number where the air has none.
+    pub(super) fn warmth(&self, [x, y, z]: [usize; 3]) -> f32 {
+        self.engine.temperature(self.row_at(y, z)).map_or(f32::NAN, |row| row[x])
     }
 
     /// Pressure above that of undisturbed air (Pa) at `position` (m), trilinear between cell centres.

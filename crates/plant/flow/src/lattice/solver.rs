@@ -29,6 +29,8 @@ pub struct Lattice {
     pub(super) forces: Vec<PointForce>,
     /// Rows that planes and volumes are read through.
     pub(super) room: Mutex<[RowState; 2]>,
+    /// Height of its lower side above the ground (m).
+    pub(super) floor: f64,
 }
 
 impl Lattice {
@@ -54,7 +56,7 @@ impl Lattice {
     ) -> Result<Self, LatticeError> {
         settings.check()?;
         let engine = Box::new(Cpu::joined(&settings, joint)?);
-        Self::on(engine, settings, inflow)
+        Ok(Self { floor: joint.floor, ..Self::on(engine, settings, inflow)? })
     }
 
     /// The same on `engine`, which was made for `settings`.
@@ -78,6 +80,7 @@ impl Lattice {
                 .to_array(),
             forces: Vec::new(),
             room: Mutex::new(std::array::from_fn(|_| RowState::new(settings.n_cells[0]))),
+            floor: 0.0,
             scaling,
             settings,
         })

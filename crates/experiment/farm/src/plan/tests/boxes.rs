@@ -105,6 +105,91 @@ fn boxes_in_an_atmosphere_and_between_open_sides_keep_off() {
 }
 
 #[test]
+fn boxes_in_an_atmosphere_meet_earlier() {
+    let row = [[0.0, 0.0], [5.0, 0.0]];
+    let short = |downstream| {
+        let of = [("upstream_diameters", 1.0), ("downstream_diameters", downstream)];
+        [asked(&["T1"], &of), asked(&["T2"], &[of[0], ("downstream_diameters", 1.0)])]
+    };
+    // From one to the other 4 D less what the first one takes, in cells of 15 m: two, and three.
+    let mut case = boxed(&row, &short(4.0 - 2.0 / 16.0));
+    assert!(plan(&case, &footprints()).is_ok());
+    case.wind.precursor = Some("layer".to_owned());
+    let near = error(&case);
+    assert_eq!(near.key(), ["flow", "refinement", "1"]);
+    assert!(near.to_string().contains("less than 3 cells apart"), "{near}");
+    let mut case = boxed(&row, &short(4.0 - 3.0 / 16.0));
+    case.wind.precursor = Some("layer".to_owned());
+    assert!(plan(&case, &footprints()).is_ok());
+
+    // One in the other, in cells of 7.5 m.
+    let nested = |room: f64| {
+        let outer = [("upstream_diameters", 1.5), ("height_diameters", 3.0)];
+        let inner = [("upstream_diameters", 1.5 - room / 32.0), ("downstream_diameters", 1.0)];
+        let mut case = boxed(
+            &[[0.0, 0.0]],
+            &[asked(&[], &[outer[0], outer[1], ("width_diameters", 3.0)]), asked(&[], &inner)],
+        );
+        case.wind.precursor = Some("layer".to_owned());
+        case
+    };
+    let near = error(&nested(2.0));
+    assert_eq!(near.key(), ["flow", "refinement", "1", "upstream_diameters"]);
+    assert!(near.to_string().contains("in flow.refinement.0: 3 cells"), "{near}");
+    assert!(plan(&nested(3.0), &footprints()).is_ok());
+}
+
+#[test]
+fn a_box_in_an_atmosphere_reaches_the_top_or_keeps_off() {
+    // The domain is 4 D high, 64 cells.
+    let high = |height| {
+        let of = [("height_diameters", height), ("downstream_diameters", 2.0)];
+        let mut case = boxed(&[[0.0, 0.0], [5.0, 0.0]], &[asked(&[], &of)]);
+        case.wind.precursor = Some("layer".to_owned());
+        case
+    };
+    let close = error(&high(4.0 - 2.0 / 16.0));
+    assert_eq!(close.key(), ["flow", "refinement", "0", "height_diameters"]);
+    let words = close.to_string();
+    assert!(
+        words.contains("lower its height_diameters, or raise flow.height_diameters"),
+        "{words}"
+    );
+    assert!(words.contains("or make it reach them"), "{words}");
+    assert!(plan(&high(4.0 - 3.0 / 16.0), &footprints()).is_ok());
+    assert_eq!(plan(&high(4.0), &footprints()).unwrap().boxes[0].n_cells[2], 64);
+}
+
+#[test]
+fn a_ground_too_rough_for_the_cells_on_it_is_refused_early() {
+    // The middle of the lowest cells, 7.5 m and in the box 3.75 m high, over e.
+    let rough = |length: f64, boxes: &[Values]| {
+        let mut case = boxed(&[[0.0, 0.0], [5.0, 0.0]], boxes);
+        let mut ground = Values::none();
+        ground.set("roughness_length", length);
+        case.flow.values.set("ground", Value::Table(ground));
+        case
+    };
+    let fits = |case: &Case| plan(case, &footprints()).is_ok();
+    let one = asked(&[], &[("downstream_diameters", 2.25)]);
+    assert!(fits(&rough(2.7, &[])) && fits(&rough(1.37, std::slice::from_ref(&one))));
+
+    let domain = error(&rough(2.8, std::slice::from_ref(&one)));
+    assert_eq!(domain.key(), ["flow", "ground", "roughness_length"]);
+    let words = domain.to_string();
+    assert!(words.contains("of flow bear 2.759 m") && words.contains("lower it, or"), "{words}");
+
+    let boxed = error(&rough(1.4, &[one]));
+    let words = boxed.to_string();
+    assert!(words.contains("of flow.refinement bear 1.379 m"), "{words}");
+    assert!(words.contains("or leave out a box"), "{words}");
+    assert_eq!(
+        PlanError::Cells { place: "flow.refinement", reason: "x".into() }.key(),
+        ["flow", "refinement"]
+    );
+}
+
+#[test]
 fn what_boxes_cannot_do_is_named_with_its_fix() {
     let row = [[0.0, 0.0], [5.0, 0.0]];
     let one = |keys: &[(&'static str, f64)]| boxed(&row, &[asked(&[], keys)]);
@@ -178,6 +263,7 @@ proptest! {
         sizes in prop::collection::vec((0.8..3.0_f64, 0.8..4.0_f64, 1.4..6.5_f64, 1.3..4.5_f64), 1..4),
         around in prop::collection::vec(0..3_usize, 3),
         place in (1.5..6.0_f64, -1.0..1.0_f64),
+        is_warm in any::<bool>(),
     ) {
         let names = [&[][..], &["T1"], &["T2"]];
         let boxes: Vec<Values> = sizes
@@ -194,8 +280,13 @@ proptest! {
             .collect();
         let mut case = boxed(&[[0.0, 0.0], [place.0, place.1]], &boxes);
         case.flow.values.set("cells_per_diameter", 8.0);
-        let Ok(plan) = plan(&case, &footprints()) else { return Ok(()) };
-        let settings = settings_of(&case, &plan);
+        case.wind.precursor = is_warm.then(|| "layer".to_owned());
+        let found = plan(&case, &footprints());
+        // Whatever the lattice would refuse is refused before, with the key that decides.
+        prop_assert!(!matches!(found, Err(PlanError::Cells { .. })), "{:?}", found);
+        let Ok(plan) = found else { return Ok(()) };
+        let mut settings = settings_of(&case, &plan);
+        settings.atmosphere = is_warm.then(|| flow::lattice::atmosphere::Atmosphere::new(290.0));
         prop_assert_eq!(flow::lattice::refinement::check(&settings, &plan.boxes), Ok(()));
         for (foot, level) in plan.positions.iter().zip(&plan.levels) {
             let hub = [foot.x, foot.y, 150.0];

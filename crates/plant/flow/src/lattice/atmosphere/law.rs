@@ -60,8 +60,29 @@ pub(super) struct Slope {
 impl Slope {
     /// That at row (`y`, `z`): between the levels below and above, where there are such.
     #[inline(always)]
-    pub(super) fn new(fields: &Fields, temperature: Field, [y, z]: [usize; 2]) -> Self {
-        let (below, above) = (fields.above(z, -1), fields.above(z, 1));
+    fn new(fields: &Fields, temperature: Field, [y, z]: [usize; 2]) -> Self {
+        Self::between(fields, temperature, y, z, [fields.above(z, -1), fields.above(z, 1)])
+    }
+
+    /// The same among the cells of the box alone: what is given in the air around is of the last steps.
+    pub(super) fn within(fields: &Fields, temperature: Field, [y, z]: [usize; 2]) -> Self {
+        let beyond = [z == 0, z + 1 == fields.n_cells[2]];
+        let [below, above] = [0, 1].map(|end| match beyond[end] && fields.joined[2][end] {
+            true => None,
+            false => fields.above(z, 2 * end as isize - 1),
+        });
+        Self::between(fields, temperature, y, z, [below, above])
+    }
+
+    /// That at row (`y`, `z`) between the levels `below` and `above`, where there are such.
+    #[inline(always)]
+    fn between(
+        fields: &Fields,
+        temperature: Field,
+        y: usize,
+        z: usize,
+        [below, above]: [Option<usize>; 2],
+    ) -> Self {
         let n_steps = usize::from(below.is_some()) + usize::from(above.is_some());
         Self {
             below: fields.row(temperature, y, below.unwrap_or(z)).cast_const(),

@@ -164,14 +164,14 @@ impl Stratification {
     }
 
     /// What acts on the cells of row (`y`, `z`), under Smagorinsky's factor `subgrid`, and the slope of their
-    /// temperature after `n_steps` steps.
+    /// temperature after `n_steps` steps, as the box's own cells tell it.
     pub(super) fn law<S: Simd>(
         &self,
         n_steps: u64,
         [y, z]: [usize; 2],
         subgrid: f32,
     ) -> (Law<S>, Slope) {
-        let slope = Slope::new(&self.fields, Fields::temperature(n_steps), [y, z]);
+        let slope = Slope::within(&self.fields, Fields::temperature(n_steps), [y, z]);
         (Law::new(&self.coefficients, self.levels[z], subgrid), slope)
     }
 

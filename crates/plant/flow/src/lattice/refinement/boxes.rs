@@ -96,13 +96,14 @@ pub enum RefinementError {
 /// inlet, an outlet, an open side or the grid around.
 pub(super) type Beyond = [[Option<Edge>; 2]; 3];
 
-/// Checks that `boxes`, and those within them, suit their places in the grid of `settings`.
+/// Checks that `boxes`, and those within them, suit their places in the grid of `settings`, and each grid the
+/// assumptions of the method: all that [`Refined::new`](super::Refined::new) refuses but memory.
 ///
 /// # Errors
 /// [`RefinementError`] for the first that does not.
 pub fn check(settings: &LatticeSettings, boxes: &[Refinement]) -> Result<(), RefinementError> {
     check_air(settings, boxes)?;
-    check_in(settings.n_cells, &beyond(settings), boxes, settings.atmosphere.is_some())
+    check_in(settings, &beyond(settings), boxes)
 }
 
 /// Cells between boxes and sides, and between boxes, in air with temperature (`is_warm`) or without.
@@ -125,15 +126,17 @@ pub(super) fn check_air(
 }
 
 fn check_in(
-    n_cells: [usize; 3],
+    settings: &LatticeSettings,
     beyond: &Beyond,
     boxes: &[Refinement],
-    is_warm: bool,
 ) -> Result<(), RefinementError> {
+    settings.check()?;
+    let (n_cells, is_warm) = (settings.n_cells, settings.atmosphere.is_some());
     check_apart(boxes, n_cells, margin(is_warm))?;
     boxes.iter().try_for_each(|one| {
         one.check(n_cells, beyond, is_warm)?;
-        check_in(one.fine_cells(), &one.beyond(n_cells, beyond), &one.within, is_warm)
+        let own = one.beyond(n_cells, beyond);
+        check_in(&one.settings(settings, &own), &own, &one.within)
     })
 }
 

@@ -60,8 +60,8 @@ impl FieldSource for Refined {
 
 impl Refined {
     /// Potential temperature (K) at each of `positions` (m) into `temperatures`, of the same length:
-    /// trilinear between cell centres of the finest box that holds them all around a position; false, and
-    /// nothing is written, where the air has none.
+    /// trilinear between cell centres of the finest box that holds them all around a position, next to a box
+    /// as [wind](WindField::sample) is; false, and nothing is written, where the air has none.
     pub fn sample_temperature(&self, positions: &[Vector3], temperatures: &mut [f64]) -> bool {
         let mut one_by_one = positions.iter().zip(temperatures);
         one_by_one.all(|(position, temperature)| self.grid.temperature(*position, temperature))
@@ -85,6 +85,12 @@ impl Inner {
             (before.is_some() || place[axis] >= 0.0) && (after.is_some() || place[axis] <= last)
         })
     }
+
+    /// Its cells in `cell` of the grid around, which it covers.
+    fn children(&self, cell: [usize; 3]) -> [[usize; 3]; 8] {
+        let first = std::array::from_fn(|axis| 2 * (cell[axis] - self.covered.low[axis]));
+        corners(first, first.map(|place| place + 1))
+    }
 }
 
 impl Grid {
@@ -105,12 +111,24 @@ impl Grid {
         }
     }
 
-    /// On return `temperature` is that at `position`, where the air has one. Cells under boxes have the means
-    /// of those in them.
+    /// On return `temperature` is that at `position`, where the air has one; false where it has none.
     fn temperature(&self, position: Vector3, temperature: &mut f64) -> bool {
-        match self.boxes.iter().find(|one| one.holds(position)) {
-            Some(one) => one.grid.temperature(position, temperature),
-            None => self.lattice.sample_temperature(&[position], std::slice::from_mut(temperature)),
+        if let Some(one) = self.boxes.iter().find(|one| one.holds(position)) {
+            return one.grid.temperature(position, temperature);
+        }
+        let Some(atmosphere) = &self.lattice.settings().atmosphere else { return false };
+        let (low, high, weight) = self.lattice.cell_cube(position);
+        let departures = corners(low, high).map(|cell| self.warmth(cell));
+        *temperature = atmosphere.reference_temperature + interpolate(&departures, weight);
+        true
+    }
+
+    /// Temperature of `cell` above the reference (K), the mean over the cells in it where it is covered:
+    /// those under a box follow that one's only when it has made its steps.
+    fn warmth(&self, cell: [usize; 3]) -> f32 {
+        match self.cover(cell) {
+            None => self.lattice.warmth(cell),
+            Some(one) => mean(&one.children(cell).map(|child| one.grid.warmth(child))),
         }
     }
 
@@ -147,9 +165,7 @@ impl Grid {
         match self.cover(cell) {
             None => self.lattice.cell_states(&[cell; 8]).map(|values| values[0]),
             Some(one) => {
-                let first: [usize; 3] =
-                    std::array::from_fn(|axis| 2 * (cell[axis] - one.covered.low[axis]));
-                let children = corners(first, first.map(|place| place + 1));
+                let children = one.children(cell);
                 if one.grid.boxes.is_empty() {
                     one.grid.lattice.cell_states(&children).map(|values| mean(&values))
                 } else {

@@ -2,14 +2,16 @@
 //!
 //! Before each of its steps the box is given the temperatures of three of its cells beyond each end, half-way
 //! in time between those around before and after the long step for its second one, and the wind through the
-//! end in the first of these. Means of levels, which buoyancy starts from, are those around as well, so that
-//! none jumps. After its steps the cells around that it covers have the means of theirs.
+//! end. That is known at the beginning of a long step, and goes on for the second short one as it has changed
+//! since the one before. Means of levels, which buoyancy starts from, are those around as well, so that none
+//! jumps. After its steps the cells around that it covers have the means of theirs.
 //!
 //! What passes an end is what the box's cells have let through: the cell around that has counted with a flux
 //! of its own has that taken back, and gets the sum of the short steps' instead (Berger, Colella 1989, J.
 //! Comput. Phys. 82, 64). So heat is kept to rounding where levels are alike, as mass is. At ends along x and
 //! y fluxes count from the same temperature on both sides; at the lower and the upper end from the level's
-//! outside.
+//! outside. It goes on as the wind does: held for both short steps, a mean that changes would leave a quarter
+//! of what it gains in a step in the cells outside.
 
 use super::halo::{End, Halo, Place};
 use super::heat;
@@ -29,19 +31,23 @@ pub(super) struct HeatCoupling {
     temperature: Halo,
     /// What is asked for, and the same a long step later.
     known: [Vec<f32>; 2],
-    /// Wind through the ends along each axis.
+    /// Wind through the ends along each axis, and what it gains in half a long step.
     wind: [Halo; 3],
     blowing: [Vec<f32>; 3],
+    gaining: [Vec<f32>; 3],
     gates: Gates,
 }
 
 /// Temperatures that buoyancy starts from, and that fluxes count from.
 struct Levels {
     place: Place,
-    /// Of the grid around before its last step, and the former now.
+    /// What buoyancy starts from in the grid around, before its last step and now.
     means: Vec<f32>,
-    bases: Vec<f32>,
     now: Vec<f32>,
+    /// What fluxes count from there before that step, what it gains in half of one, and as the box counts.
+    starts: Vec<f32>,
+    gains: Vec<f32>,
+    bases: Vec<f32>,
     unused: Vec<f32>,
     /// Of the box.
     own_means: Vec<f32>,
@@ -77,6 +83,7 @@ impl HeatCoupling {
             levels: Levels::new(place),
             known: [0, 1].map(|_| vec![0.0; temperature.asked.len()]),
             blowing: wind.each_ref().map(|halo| vec![0.0; halo.places.len()]),
+            gaining: wind.each_ref().map(|halo| vec![0.0; halo.places.len()]),
             temperature,
             wind,
             gates: Gates::new(place, near, own),
@@ -87,19 +94,31 @@ impl HeatCoupling {
 
     /// Takes note of the levels of the grid `around` before its step.
     pub(super) fn keep(&mut self, around: &mut Lattice) {
-        let Levels { means, bases, .. } = &mut self.levels;
+        let has_gained = around.n_steps() > 0;
+        let Levels { means, starts, gains, bases, .. } = &mut self.levels;
         heat(around).levels(means, bases);
+        for ((gain, start), base) in gains.iter_mut().zip(starts).zip(bases) {
+            *gain = if has_gained { 0.5 * (*base - *start) } else { 0.0 };
+            *start = *base;
+        }
     }
 
     /// Takes up what the grid `around` has made of wind and temperature in its last step.
     pub(super) fn take(&mut self, around: &mut Lattice) {
-        let weights = weights(around.n_steps() - 1);
+        let n_steps = around.n_steps() - 1;
+        let weights = weights(n_steps);
         let around = heat(around);
         let [known, _] = &mut self.known;
         for (axis, (halo, blowing)) in self.wind.iter().zip(&mut self.blowing).enumerate() {
             let known = &mut known[..halo.asked.len()];
             around.read(Heat::Wind(axis), &halo.asked, known);
+            let gaining = &mut self.gaining[axis];
+            gaining.copy_from_slice(blowing);
             halo.fill(known, 0, blowing);
+            for (gain, wind) in gaining.iter_mut().zip(&*blowing) {
+                // Before the first step there was none that it could have grown from.
+                *gain = if n_steps == 0 { 0.0 } else { 0.5 * (wind - *gain) };
+            }
         }
         let Gates { long, owed, fluxes, .. } = &mut self.gates;
         let fluxes = &mut fluxes[..long.len()];
@@ -120,9 +139,14 @@ impl HeatCoupling {
         }
         let halo = &self.temperature;
         inside.write(Heat::Now, &halo.places, &|first, values| halo.fill(known, first, values));
-        for (axis, (halo, blowing)) in self.wind.iter().zip(&self.blowing).enumerate() {
+        let gained = step as f32;
+        for (axis, halo) in self.wind.iter().enumerate() {
+            let (blowing, gaining) = (&self.blowing[axis], &self.gaining[axis]);
             inside.write(Heat::Wind(axis), &halo.places, &|first, values| {
-                values.copy_from_slice(&blowing[first..first + values.len()]);
+                let winds = blowing[first..].iter().zip(&gaining[first..]);
+                for (value, (wind, gain)) in values.iter_mut().zip(winds) {
+                    *value = wind + gained * gain;
+                }
             });
         }
         self.levels.hand_on(around, inside, step);
@@ -172,10 +196,13 @@ impl HeatCoupling {
     /// Writes what is on its way between two steps of the box, and what the next ones go on from.
     pub(super) fn write_state(&self, writer: &mut dyn Write) -> Result<()> {
         let mut bytes = Vec::new();
-        let Levels { means, bases, .. } = &self.levels;
+        let Levels { means, starts, gains, bases, .. } = &self.levels;
         let [x, y, z] = &self.blowing;
+        let [u, v, w] = &self.gaining;
         let Gates { last: [long, short], owed, .. } = &self.gates;
-        for values in [means, bases, x, y, z, long, short, owed] {
+        let levels = [means, starts, gains, bases];
+        let gates = [long, short, owed];
+        for values in levels.into_iter().chain([x, y, z, u, v, w]).chain(gates) {
             write_values(writer, &mut bytes, values)?;
         }
         Ok(())
@@ -184,10 +211,13 @@ impl HeatCoupling {
     /// Reads what [`write_state`](Self::write_state) wrote.
     pub(super) fn read_state(&mut self, reader: &mut dyn Read) -> Result<()> {
         let mut bytes = Vec::new();
-        let Levels { means, bases, .. } = &mut self.levels;
+        let Levels { means, starts, gains, bases, .. } = &mut self.levels;
         let [x, y, z] = &mut self.blowing;
+        let [u, v, w] = &mut self.gaining;
         let Gates { last: [long, short], owed, .. } = &mut self.gates;
-        for values in [means, bases, x, y, z, long, short, owed] {
+        let levels = [means, starts, gains, bases];
+        let gates = [long, short, owed];
+        for values in levels.into_iter().chain([x, y, z, u, v, w]).chain(gates) {
             read_values(reader, &mut bytes, values)?;
         }
         Ok(())
@@ -198,7 +228,7 @@ impl HeatCoupling {
         let halos = self.wind.iter().chain([&self.temperature]).map(Halo::memory);
         let Gates { long, short, outside, fluxes, .. } = &self.gates;
         let blowing: usize = self.blowing.iter().map(Vec::len).sum();
-        let n_values = 2 * self.known[0].len() + blowing + 3 * long.len() + fluxes.len();
+        let n_values = 2 * (self.known[0].len() + blowing) + 3 * long.len() + fluxes.len();
         (halos.sum::<usize>()
             + size_of::<f32>() * n_values
             + size_of::<usize>() * outside.len()
@@ -213,8 +243,10 @@ impl Levels {
         Self {
             place: *place,
             means: room(),
-            bases: room(),
             now: room(),
+            starts: room(),
+            gains: room(),
+            bases: room(),
             unused: room(),
             own_means: own(),
             own_bases: own(),
@@ -223,11 +255,12 @@ impl Levels {
 
     /// Gives the box `inside` those of the grid `around` for its first (0) or second (1) `step`.
     fn hand_on(&mut self, around: &dyn HeatExchange, inside: &mut dyn HeatExchange, step: usize) {
-        let Self { place, means, bases, now, unused, own_means, own_bases } = self;
+        let Self { place, means, now, gains, bases, unused, own_means, own_bases, .. } = self;
         now.copy_from_slice(means);
         if step == 1 {
             around.levels(now, unused);
             halve(now, means);
+            bases.iter_mut().zip(gains).for_each(|(base, gain)| *base += *gain);
         }
         place.divide_levels(now, own_means);
         let first = place.covered.low[2];

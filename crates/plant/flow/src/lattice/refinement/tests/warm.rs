@@ -1,8 +1,11 @@
 //! Temperature in boxes: what stays, what is kept, what is given, and the same bits.
 
 mod carried;
+mod cooled;
 mod layers;
+mod orders;
 mod records;
+mod starts;
 mod swings;
 
 use super::*;

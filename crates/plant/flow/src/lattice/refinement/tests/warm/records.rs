@@ -132,6 +132,70 @@ fn temperature_is_seen_as_it_is() {
 }
 
 #[test]
+fn temperature_between_steps_is_that_of_the_boxes() {
+    // After an odd number of their steps, when the cells around are ahead of them.
+    let (mut air, forces) = gusty(2);
+    air.advance(0.025 * 101.0, &forces).expect("no divergence");
+    let grids = air.lattices();
+    let told = |grid: &Lattice, place: Vector3| {
+        let mut found = [0.0];
+        assert!(grid.sample_temperature(&[place], &mut found));
+        found[0]
+    };
+    let mut most: f64 = 0.0;
+    for y in [-30.0, 0.0] {
+        // The upper side of the outer box, 90 m up: half-way from the last cell under it to the first above.
+        let at = |z: f64| Vector3::new(25.0, y + 5.0, z);
+        let mut found = [0.0];
+        assert!(air.sample_temperature(&[at(90.0)], &mut found));
+        // Between the middles of eight cells lies their mean.
+        let expected = 0.5 * (told(grids[1], at(85.0)) + told(grids[0], at(95.0)));
+        assert!((found[0] - expected).abs() < 1e-5, "{} K for {expected} K", found[0]);
+        most = most.max((told(grids[1], at(85.0)) - told(grids[0], at(85.0))).abs());
+    }
+    println!("the cells around are up to {most:e} K ahead under the box");
+    // Half of that is what was wrong.
+    assert!(most > 1e-4, "{most} K tells nothing");
+}
+
+#[test]
+fn statistics_of_a_box_are_those_of_its_own_cells() {
+    let linear = |x: Vector3| 290.0 + 0.05 * x.z;
+    let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [18, 14, 16], 0.1, 8.0);
+    (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
+    settings.threads = Some(2);
+    settings.atmosphere = Some(Atmosphere {
+        temperature: vec![[0.0, 290.0], [160.0, 298.0]],
+        ..Atmosphere::new(290.0)
+    });
+    let begun = || {
+        refined(settings.clone(), &[cells([4, 3, 4], [10, 8, 6])], |_, x| Vector3::X * 0.01 * x.z)
+    };
+    let mut air = begun();
+    let levels = |air: &Refined| air.lattices()[1].level_statistics();
+    for _ in 0..3 {
+        let levels = levels(&air);
+        for level in &levels {
+            let expected = linear(Vector3::Z * level.height);
+            assert!((level.temperature - expected).abs() < 1e-3, "{level:?} for {expected} K");
+            // The slope, and with it the heat that goes up unresolved, is the same at the first level and at
+            // the last as between them.
+            let between = levels[5].subgrid_heat_flux;
+            let off = level.subgrid_heat_flux / between - 1.0;
+            assert!(between < 0.0 && off.abs() < 0.02, "{level:?} for {between} K m/s");
+        }
+        air.advance(0.1, &[]).expect("no divergence");
+    }
+    assert_eq!(levels(&air)[0].height, 42.5);
+    // They hang on nothing but the state.
+    let mut bytes = Vec::new();
+    air.write_state(&mut bytes).expect("memory takes it");
+    let mut other = begun();
+    other.read_state(&mut bytes.as_slice()).expect("a state");
+    assert_eq!(levels(&other), levels(&air));
+}
+
+#[test]
 fn memory_of_a_warm_box_is_told() {
     for stencil in [Stencil::D3Q19, Stencil::D3Q27] {
         let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [44, 28, 24], 0.1, 8.0);
