@@ -111,7 +111,7 @@ pub(super) fn speed_at_hub(wind: &PrecursorResult) -> f64 {
 }
 
 /// Turbulence intensity (–) at `height` (m), linear between the levels of `profile`.
-pub(super) fn intensity_at(profile: &[ProfileRow], height: f64) -> f64 {
+fn intensity_at(profile: &[ProfileRow], height: f64) -> f64 {
     let next = profile.partition_point(|level| level.height < height);
     let (Some(above), Some(below)) = (profile.get(next), next.checked_sub(1)) else {
         return f64::NAN;
