@@ -7,6 +7,7 @@ use crate::file_of_wind;
 use crate::hosting;
 use crate::linear_laws::{self, LawDigests};
 use crate::models::{self, Machines};
+use crate::outputs::wind_slices;
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
 use farm::assemble::{AssemblyError, TurbineModel, controller, misalignment, sensing};
@@ -72,7 +73,9 @@ impl Prepared {
     /// # Errors
     /// Those of [`with_models`](Self::with_models).
     pub(crate) fn of_machines(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
-        Self::new(file, machines).map_err(|error| pointed_at(file, error))
+        let prepared = Self::new(file, machines).map_err(|error| pointed_at(file, error))?;
+        wind_slices::check(file, &prepared)?;
+        Ok(prepared)
     }
 
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
@@ -83,7 +86,7 @@ impl Prepared {
         let models = machines.equipped(&case);
         threads::check(file)?;
         let table = file_of_wind::table(file, &plan)?;
-        let planes = file_of_wind::planes(file)?;
+        let planes = file_of_wind::planes(file, &plan)?;
         let planes = planes.as_deref();
         let speed = file_of_wind::recorded_speed(table.as_deref(), planes, &case);
         check_operation(&case, &plan, &models, speed)?;
