@@ -46,15 +46,21 @@ fn beside(setup: &Prepared, start: Start) -> Result<Air, StudyError> {
 }
 
 /// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes,
-/// but that of a precursor beside it.
+/// but that of a precursor beside it, and the planes of a solver that knows no other wind.
 ///
 /// # Errors
-/// [`StudyError`] when its solver cannot be set up.
+/// [`StudyError`] when its solver cannot be set up, or its planes cannot be read.
 pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyError> {
     case.wind.turbulence_intensity = 0.0;
     case.wind.planes = None;
+    let planes = if case.wind_source() == WindSource::Planes {
+        case.wind.planes = setup.case.wind.planes.clone();
+        Some(planes(setup)?)
+    } else {
+        None
+    };
     let site = Site { case, ..setup.site() };
-    let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
+    let inflow = Arc::clone(&setup.mean_inflow);
     beside(setup, Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
 }
 

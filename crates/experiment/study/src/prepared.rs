@@ -7,7 +7,7 @@ use crate::file_of_wind;
 use crate::hosting;
 use crate::linear_laws::{self, LawDigests};
 use crate::models::{self, Machines};
-use crate::outputs::wind_slices;
+use crate::slice_layout::{self, Laid};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
 use farm::assemble::{AssemblyError, TurbineModel, controller, misalignment, sensing};
@@ -73,9 +73,7 @@ impl Prepared {
     /// # Errors
     /// Those of [`with_models`](Self::with_models).
     pub(crate) fn of_machines(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
-        let prepared = Self::new(file, machines).map_err(|error| pointed_at(file, error))?;
-        wind_slices::check(file, &prepared)?;
-        Ok(prepared)
+        Self::new(file, machines).map_err(|error| pointed_at(file, error))
     }
 
     fn new(file: &CaseFile, machines: Machines) -> Result<Self, StudyError> {
@@ -85,6 +83,7 @@ impl Prepared {
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
+        slice_layout::check(file, Laid { case: &case, plan: &plan, models: &models })?;
         let table = file_of_wind::table(file, &plan)?;
         let planes = file_of_wind::planes(file, &plan)?;
         let planes = planes.as_deref();

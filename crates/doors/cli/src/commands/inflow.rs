@@ -41,8 +41,8 @@ pub(crate) enum InflowCommand {
     },
     /// Spin up a periodic box of atmosphere, tell its statistics, and record planes of its wind for studies
     Precursor(super::inflow_precursor::PrecursorArguments),
-    /// Take a block of recorded wind on a rectangle, moved sideways, for other programs (a case takes the same
-    /// by wind.cut, without a file)
+    /// Take a block of recorded wind on a rectangle, moved sideways, for other programs (a case takes the
+    /// same by wind.cut, without a file)
     Cut(super::inflow_cut::CutArguments),
     /// Write the wind of a case without turbulence (shear, veer, gusts, steps, rotating disk) as a full field
     Sample(super::inflow_sample::SampleArguments),

@@ -356,7 +356,7 @@ pub(super) static OUTPUT: Table = Table {
             Holds::Outputs,
             "",
             Otherwise("none"),
-            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. `phase-averages` comes with the program; programs built on it add theirs.",
+            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. `phase-averages` and `wind-slices` come with the program; programs built on it add theirs.",
         ),
     ],
 };

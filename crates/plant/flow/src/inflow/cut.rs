@@ -154,6 +154,7 @@ impl CutError {
     /// The part of [`Cut`] that is to blame; none where it is the record.
     pub fn key(&self) -> Option<&'static str> {
         match self {
+            Self::Over { begin, length, block: 1, .. } if begin >= length => Some("from"),
             Self::Over { block: 1, .. } | Self::Brief { .. } => Some("duration"),
             Self::Over { .. } | Self::Endless { .. } => Some("block"),
             Self::Fine { .. } => Some("spacing"),
@@ -271,7 +272,8 @@ fn window(grid: &PlaneGrid, cut: &Cut) -> Result<(usize, usize), CutError> {
     let duration = match cut.duration {
         Some(duration) => duration,
         None if block > 1 => return Err(CutError::Endless { block }),
-        None => (length - cut.from).max(0.0),
+        // From its end on there is nothing, which is told below.
+        None => (length - cut.from).max(interval),
     };
     let begin = cut.from + (block - 1) as f64 * duration;
     let end = begin + duration;

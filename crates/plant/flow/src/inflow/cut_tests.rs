@@ -178,7 +178,7 @@ fn what_does_not_fit_is_told_with_what_would() {
             "duration",
             "less than the 1.000 s between two planes",
         ),
-        (Cut { from: 100.0, duration: None, ..CUT }, "duration", "less than the 1.000 s"),
+        (Cut { from: 100.0, duration: None, ..CUT }, "from", "or an earlier begin"),
         (
             Cut { spacing: Some(5.0), ..CUT },
             "spacing",

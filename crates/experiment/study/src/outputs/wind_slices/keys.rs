@@ -4,15 +4,10 @@ use super::super::output::OwnKeys;
 use basis::keys::LeftOut::{Otherwise, Required, Value};
 use basis::keys::{Holds, Objection, Range, Table, Values, above, key};
 
-/// Width and height of slices (diameters) unless the case says otherwise: room for a rotor that stands more
-/// than a diameter aside.
-pub(super) const USUAL_WIDTH: f64 = 4.0;
-pub(super) const USUAL_HEIGHT: f64 = 1.2;
-
 pub(super) static OWN: OwnKeys = OwnKeys {
     table: Table {
         heading: "output.further.NAME = { kind = \"wind-slices\", … }",
-        about: "Wind on slices across it, from the end of the spin-up on, each a full field in TurbSim's format that does not repeat: `RUN/slices-NAME-3D.bts` at 3 D. `wind.cut` takes blocks of them as the wind of other cases, `wakemix inflow cut` writes these for other programs. A point takes 6 bytes of disk a plane, 18 until the run is complete, and 72 bytes of memory, however long it is; `--dry-run` tells both. Runs without the turbine, `kind = \"absent\"`, record the undisturbed wind.",
+        about: "Wind on slices across it, from the end of the spin-up on, each a full field in TurbSim's format that does not repeat: `RUN/slices-NAME-3D.bts` at 3 D. `wind.cut` takes blocks of them as the wind of other cases, `wakemix inflow cut` writes these for other programs. A point takes 6 bytes of disk a plane, 12 more until the run is complete, which stay with `last_checkpoint = \"keep\"` so that it can go on, and 72 bytes of memory, however long it is; `--dry-run` tells both. Runs without the turbine, `kind = \"absent\"`, record the undisturbed wind.",
         keys: &[
             key(
                 "distances_diameters",

@@ -25,7 +25,7 @@ fn points_memory_and_disk_are_known_before_the_run() {
         setup(", distances_diameters = [-1.0, 2.0, 3.5], width = 300, height = 160, spacing = 20")
             .expect("a sound case");
     let values = &setup.case.output.further[0].values;
-    let slices = Slices::of(&setup, values).expect("a turbine");
+    let slices = of(&setup, values).expect("a turbine");
     let grid = slices.grid();
     assert_eq!(([grid.n_y, grid.n_z], grid.first), ([16, 9], [-150.0, 10.0]));
     assert!((slices.foot(3.5).x - 3.5 * setup.plan.diameter).abs() < 1e-9);
@@ -37,7 +37,7 @@ fn points_memory_and_disk_are_known_before_the_run() {
     assert_eq!(disk(&setup, &setup.case.runs[0], values), n_planes * 3 * 16 * 9 * 18);
     // Without further words four diameters wide, as fine as the cells, no row below the lowest cells.
     let setup = self::setup(", distances_diameters = [3.0]").expect("a sound case");
-    let grid = Slices::of(&setup, &setup.case.output.further[0].values).expect("a turbine").grid();
+    let grid = of(&setup, &setup.case.output.further[0].values).expect("a turbine").grid();
     assert_eq!([grid.n_y, grid.n_z], [33, 10]);
     assert!(grid.first[1] >= 0.5 * setup.plan.spacing && grid.first[1] < 1.5 * setup.plan.spacing);
 }
@@ -54,7 +54,7 @@ fn what_cannot_be_recorded_is_refused_with_key_and_fix() {
         ),
         (
             ", distances_diameters = [3.0], width = 700",
-            "wake.width: slices 693.0 m wide reach beyond the sides of the domain: give a width of 614.3 m at most",
+            "wake.width: slices 692.3 m wide reach beyond the sides of the domain: give a width of 613.7 m at most",
         ),
         (", distances_diameters = [3.0], height = 700", "raise flow.height_diameters"),
         (
