@@ -113,6 +113,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         precursor: None,
         precursor_beside: false,
         beyond_planes: None,
+        cut: None,
         table: None,
         veer: 0.0,
         event: None,

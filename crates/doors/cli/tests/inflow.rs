@@ -153,3 +153,38 @@ fn a_precursor_tells_its_cost_and_what_is_wrong() {
     assert!(said(&output).contains("`atmosphere.inversion_height` = 700 m"), "{}", said(&output));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn a_block_of_a_record_is_cut_for_other_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = ["inflow", "generate", "--model", "kaimal", "--speed", "8", "--ti", "0.06"];
+    let grid = ["--size", "60x21x9", "--spacing", "20", "--time-step", "1", "-o", "wide.bts"];
+    assert!(wakemix(&[&made[..], &grid[..]].concat(), folder.path()).status.success());
+    let cut = |more: &[&str], output: &str| {
+        let part = ["inflow", "cut", "wide.bts", "--duration", "20", "--width", "160"];
+        wakemix(&[&part[..], more, &["-o", output]].concat(), folder.path())
+    };
+    for file in ["block.bts", "block.wnd"] {
+        let output = cut(&["--block", "2", "--shift", "-120"], file);
+        let told = said(&output);
+        assert!(
+            output.status.success() && told.contains("part: 21 planes of 9 × 9 points"),
+            "{told}"
+        );
+        let output = wakemix(&["inflow", "info", file, "--json"], folder.path());
+        let info: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(info["n_points"], serde_json::json!([21, 9, 9]), "{file}");
+    }
+    let refused = [
+        (&["--block", "3"][..], "third.bts", "--block: wide.bts: block 3 goes from 40.0 to 60.0 s"),
+        (&["--shift", "130"], "aside.bts", "take a shift from -120.0 to 120.0 m"),
+        (&["--spacing", "10"], "fine.bts", "finer than those of the record, 20.000 m"),
+        (&[], "block.bts", "--overwrite"),
+        (&[], "box.toml", "name it NAME.bts or NAME.wnd"),
+    ];
+    for (more, file, text) in refused {
+        let output = cut(more, file);
+        let told = said(&output).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(!output.status.success() && told.contains(text), "{more:?}: {told}");
+    }
+}

@@ -6,7 +6,7 @@ pub use crate::outputs::Requested;
 pub use crate::solvers::{Solver, WindSource};
 pub use control::{Control, Sense};
 pub use flow::inflow::deterministic::Change;
-pub use flow::inflow::recorded::Beyond;
+pub use flow::inflow::{Cut, recorded::Beyond};
 pub use sensing::{Instrument, Instruments, Lag, Mounted};
 
 use crate::layout;
@@ -40,8 +40,7 @@ pub struct Wind {
     /// Mean speed at hub height of the first turbine (m/s).
     pub speed: f64,
     /// Where the mean wind comes from on the map (rad, clockwise from north); [`FROM_WEST`] blows to the
-    /// east.
-    /// The wind's frame follows it, see [`Case::places`].
+    /// east. The wind's frame follows it, see [`Case::places`].
     pub direction: f64,
     /// Turbulence intensity, standard deviation of the streamwise component over `speed` (–).
     pub turbulence_intensity: f64,
@@ -71,6 +70,8 @@ pub struct Wind {
     pub precursor_beside: bool,
     /// What blows where a domain is larger than the grid of these planes, where the case says so.
     pub beyond_planes: Option<Beyond>,
+    /// What is taken of the planes of a file; all of it when absent.
+    pub cut: Option<Cut>,
     /// File with the wind over time for a solver of deterministic wind, relative to the case file.
     pub table: Option<String>,
     /// Veer (rad/m): the mean wind turns clockwise, seen from above, by so much per metre upwards; zero at

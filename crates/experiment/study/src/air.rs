@@ -10,8 +10,9 @@ use farm::precursor::Accompanied;
 use farm::solvers::{SolverError, Start, WindSource};
 use farm::wind::Site;
 use flow::Inflow;
-use flow::inflow::Planes;
+use flow::inflow::{InflowError, Planes};
 use flow::lattice::refinement::RefinementError;
+use formats::FileError;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -28,7 +29,8 @@ pub(crate) fn begin(
 ) -> Result<Air, StudyError> {
     let planes =
         if setup.case.wind_source() == WindSource::Planes { Some(planes(setup)?) } else { None };
-    beside(setup, Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress })
+    let start = Start { site: setup.site(), inflow: Arc::clone(inflow), planes, progress };
+    beside(setup, start).map_err(|error| told(setup, error))
 }
 
 /// The air of `start`, that of `setup`, which the wind of a precursor enters that goes on beside it, where
@@ -44,15 +46,21 @@ fn beside(setup: &Prepared, start: Start) -> Result<Air, StudyError> {
 }
 
 /// The air of `case`, that of `setup`, in which on return the wind is steady: neither turbulence nor planes,
-/// but that of a precursor beside it.
+/// but that of a precursor beside it, and the planes of a solver that knows no other wind.
 ///
 /// # Errors
-/// [`StudyError`] when its solver cannot be set up.
+/// [`StudyError`] when its solver cannot be set up, or its planes cannot be read.
 pub(crate) fn steady(setup: &Prepared, case: &mut Case) -> Result<Air, StudyError> {
     case.wind.turbulence_intensity = 0.0;
     case.wind.planes = None;
+    let planes = if case.wind_source() == WindSource::Planes {
+        case.wind.planes = setup.case.wind.planes.clone();
+        Some(planes(setup)?)
+    } else {
+        None
+    };
     let site = Site { case, ..setup.site() };
-    let (inflow, planes) = (Arc::clone(&setup.mean_inflow), None);
+    let inflow = Arc::clone(&setup.mean_inflow);
     beside(setup, Start { site, inflow, planes, progress: &|_| ControlFlow::Continue(()) })
 }
 
@@ -69,12 +77,35 @@ fn begun(start: Start) -> Result<Air, StudyError> {
     })
 }
 
-/// The recorded planes of wind that `setup` names.
+/// The recorded planes of wind that `setup` names, as much of them as it takes.
 ///
 /// # Errors
-/// [`StudyError::File`] when it cannot be read.
+/// [`StudyError::File`] when they cannot be read, or do not hold any more what is taken.
 pub(crate) fn planes(setup: &Prepared) -> Result<Box<dyn Planes>, StudyError> {
-    Ok(atmosphere::open_planes(&setup.case, setup.folder())?)
+    let planes = atmosphere::open_planes(&setup.case, setup.folder())?;
+    let cut = atmosphere::cut(&setup.case, &setup.plan, planes);
+    Ok(cut.map_err(|error| of_cut(setup, error.to_string(), "record it again"))?)
+}
+
+/// That what `setup` takes of the file of its planes is not what it needs.
+fn of_cut(setup: &Prepared, problem: String, fix: &str) -> FileError {
+    let name = setup.case.wind.planes.as_deref().unwrap_or_default();
+    FileError::content("a part of recorded wind", &setup.folder().join(name), problem, fix)
+}
+
+/// `error` of the air of `setup`, with the keys of its cut where that ends before the run does.
+fn told(setup: &Prepared, error: StudyError) -> StudyError {
+    match error {
+        StudyError::Inflow(InflowError::Ended { length, time })
+            if setup.case.wind.cut.is_some() =>
+        {
+            let problem =
+                format!("wind.cut takes {length:.1} s of it, and the run needs {time:.1} s");
+            let fix = "raise wind.cut.duration, or lower time.duration";
+            of_cut(setup, problem, fix).into()
+        }
+        error => error,
+    }
 }
 
 /// Begins the wind that `setup` reads from a file, where it does, and lets it go: what is wrong with the

@@ -5,7 +5,7 @@ use crate::precursor::memory;
 use farm::Plan;
 use farm::case::Case;
 use farm::wind::Surroundings;
-use flow::inflow::{ColumnLevel, InflowError, PlaneGrid, Planes};
+use flow::inflow::{ColumnLevel, CutError, CutPlanes, InflowError, PlaneGrid, Planes};
 use formats::case::{CaseFile, PrecursorFile, objection, parse_precursor};
 use formats::netcdf::{TemperatureReader, read_statistics};
 use formats::records::PrecursorFolder;
@@ -73,6 +73,21 @@ pub(crate) fn open_planes(case: &Case, folder: &Path) -> Result<Box<dyn Planes>,
     let wind = turbulence_box::open(&of.planes_path())?;
     let temperature = TemperatureReader::open(&of.temperature_path(), &wind.grid())?;
     Ok(Box::new(WarmPlanes { wind, temperature }))
+}
+
+/// What `case`, laid out as `plan`, takes of its recorded `planes`.
+///
+/// # Errors
+/// [`CutError`] where they do not hold it.
+pub(crate) fn cut(
+    case: &Case,
+    plan: &Plan,
+    planes: Box<dyn Planes>,
+) -> Result<Box<dyn Planes>, CutError> {
+    Ok(match &case.wind.cut {
+        None => planes,
+        Some(cut) => Box::new(CutPlanes::new(planes, cut, plan.hub_height)?),
+    })
 }
 
 /// Whether the precursor in `folder` is there, and complete.

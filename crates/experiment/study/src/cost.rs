@@ -2,7 +2,7 @@
 
 use crate::StudyError;
 use crate::observer::Estimate;
-use crate::outputs::{Outputs, outb, phase_averages, series, volumes};
+use crate::outputs::{Outputs, outb, phase_averages, series, volumes, wind_slices};
 use crate::prepared::Prepared;
 use farm::case::Solver;
 use farm::pitch_response::IdentificationCost;
@@ -97,7 +97,8 @@ impl Prepared {
                 + turbulence.unwrap_or(0)
                 + self.memory_beside
                 + volumes::memory(self)
-                + phase_averages::memory(self),
+                + phase_averages::memory(self)
+                + wind_slices::memory(self),
             disk: disks().max().unwrap_or(0),
             n_rows: series::n_rows(self),
             row: open.iter().map(|&index| self.row_of_run(index)).max().unwrap_or(0),

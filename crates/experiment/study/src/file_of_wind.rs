@@ -43,14 +43,18 @@ pub(crate) fn table(
 /// The planes of wind that the case of `file` reads, opened; none where it reads none.
 ///
 /// # Errors
-/// [`StudyError::Case`] at `wind.planes` or `wind.precursor`.
-pub(crate) fn planes(file: &CaseFile) -> Result<Option<Box<dyn Planes>>, StudyError> {
+/// [`StudyError::Case`] at `wind.planes`, `wind.precursor` or the key of `wind.cut` that does not fit.
+pub(crate) fn planes(file: &CaseFile, plan: &Plan) -> Result<Option<Box<dyn Planes>>, StudyError> {
     let case = &file.case;
     if case.wind_source() != WindSource::Planes && !wind::enters_from_file(case) {
         return Ok(None);
     }
     match atmosphere::open_planes(case, file.folder()) {
-        Ok(planes) => Ok(Some(planes)),
+        Ok(planes) => atmosphere::cut(case, plan, planes).map(Some).map_err(|error| {
+            let path = ["wind", "cut"].into_iter().chain(error.key()).collect::<Vec<_>>();
+            let message = format!("{}: {}: {error}", path.join("."), name_of(case));
+            StudyError::Case(objection(file, &path, message))
+        }),
         Err(error) => {
             let message = unreadable(&error);
             Err(StudyError::Case(objection(file, &["wind", key_of(case)], message)))

@@ -44,6 +44,7 @@ mod same_case;
 mod sample;
 mod self_check;
 mod simulate;
+mod slice_layout;
 mod study;
 mod summarise;
 mod sweep;

@@ -7,6 +7,7 @@ use crate::file_of_wind;
 use crate::hosting;
 use crate::linear_laws::{self, LawDigests};
 use crate::models::{self, Machines};
+use crate::slice_layout::{self, Laid};
 use crate::threads;
 use crate::warnings::{self, SetupWarning};
 use farm::assemble::{AssemblyError, TurbineModel, controller, misalignment, sensing};
@@ -82,8 +83,9 @@ impl Prepared {
         let plan = plan(&case, &machines.footprints(case.wind.speed))?;
         let models = machines.equipped(&case);
         threads::check(file)?;
+        slice_layout::check(file, Laid { case: &case, plan: &plan, models: &models })?;
         let table = file_of_wind::table(file, &plan)?;
-        let planes = file_of_wind::planes(file)?;
+        let planes = file_of_wind::planes(file, &plan)?;
         let planes = planes.as_deref();
         let speed = file_of_wind::recorded_speed(table.as_deref(), planes, &case);
         check_operation(&case, &plan, &models, speed)?;

@@ -6,7 +6,7 @@ use crate::observer::Observer;
 use crate::prepared::Prepared;
 use crate::threads::cores;
 use farm::assemble::TurbineModel;
-use farm::case::{Control, Run};
+use farm::case::{Control, Run, WindSource};
 use farm::self_check::{SelfCheck, SelfCheckError, TIMED, Tunnel, self_check, updates_per_second};
 use farm::{Unrecorded, assemble};
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Cells of a domain up to which a study is timed in it (–): it takes a moment to fill.
 pub(crate) const MOST_TIMED: usize = 2_000_000;
 /// Steps that are timed at least where a precursor goes on beside them (–).
-const STEPS_BESIDE: i32 = 16;
+const STEPS_BESIDE: u32 = 16;
 
 /// What the self-check of a study's rotors found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,8 +96,8 @@ impl Prepared {
     }
 
     /// Cell updates a second (1/s) of the farm of `run` in its own domain, or its steps with wakes of full
-    /// length: all of its turbines under baseline control, in wind without turbulence, of which nothing is
-    /// kept. None where it breaks down at once.
+    /// length: all of its turbines under baseline control, in wind without turbulence, or in that of its
+    /// planes as long as a run lasts, of which nothing is kept. None where it breaks down at once.
     ///
     /// # Errors
     /// Those of [`timed`](Self::timed).
@@ -131,10 +131,18 @@ impl Prepared {
             is_sound = is_sound && advance();
         }
         let started = Instant::now();
-        let mut n_steps = 0;
+        let mut n_steps = 0_u32;
+        // Planes that do not repeat end with the run.
+        let most = match case.wind_source() {
+            WindSource::Planes => self.plan.n_steps.saturating_sub(1).max(1),
+            _ => u64::MAX,
+        };
         // A precursor beside it makes its steps now and then, too.
         let least = if self.memory_beside > 0 { STEPS_BESIDE } else { 1 };
-        while is_sound && (n_steps % in_one != 0 || n_steps < least || started.elapsed() < TIMED) {
+        while is_sound
+            && u64::from(n_steps) < most
+            && (n_steps % in_one != 0 || n_steps < least || started.elapsed() < TIMED)
+        {
             is_sound = advance();
             n_steps += 1;
         }

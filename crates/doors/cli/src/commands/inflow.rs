@@ -41,6 +41,9 @@ pub(crate) enum InflowCommand {
     },
     /// Spin up a periodic box of atmosphere, tell its statistics, and record planes of its wind for studies
     Precursor(super::inflow_precursor::PrecursorArguments),
+    /// Take a block of recorded wind on a rectangle, moved sideways, for other programs (a case takes the
+    /// same by wind.cut, without a file)
+    Cut(super::inflow_cut::CutArguments),
     /// Write the wind of a case without turbulence (shear, veer, gusts, steps, rotating disk) as a full field
     Sample(super::inflow_sample::SampleArguments),
 }
@@ -139,6 +142,7 @@ pub(crate) fn run(command: InflowCommand) -> ExitCode {
         InflowCommand::Generate(arguments) => generate(&arguments),
         InflowCommand::Info { file, json } => super::inflow_info::run(&file, json),
         InflowCommand::Convert { from, to, overwrite } => convert(&from, &to, overwrite),
+        InflowCommand::Cut(arguments) => super::inflow_cut::run(&arguments),
         InflowCommand::Sample(arguments) => super::inflow_sample::run(&arguments),
     };
     match done {

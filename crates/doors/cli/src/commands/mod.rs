@@ -10,6 +10,7 @@ pub(crate) mod fatigue;
 #[cfg(feature = "design")]
 pub(crate) mod identify;
 pub(crate) mod inflow;
+mod inflow_cut;
 mod inflow_info;
 mod inflow_precursor;
 mod inflow_sample;

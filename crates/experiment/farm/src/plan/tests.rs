@@ -43,6 +43,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             precursor: None,
             precursor_beside: false,
             beyond_planes: None,
+            cut: None,
             table: None,
             veer: 0.0,
             event: None,

@@ -53,6 +53,7 @@ mod tests {
             precursor: None,
             precursor_beside: false,
             beyond_planes: None,
+            cut: None,
             table: None,
             veer: 0.0,
             event: None,

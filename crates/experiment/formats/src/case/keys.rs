@@ -1,12 +1,14 @@
 //! The one table of keys: what the reader accepts, what the reference prints, what the schema says.
 
 mod campaign;
+mod cut;
 mod event;
 mod flow;
 mod instruments;
 mod precursor;
 
 pub(super) use campaign::CAMPAIGN;
+pub(super) use cut::CUT;
 pub(super) use event::{EVENTS, STEP};
 pub(super) use flow::{COMMON as FLOW_COMMON, flow};
 pub(super) use instruments::{
@@ -82,6 +84,7 @@ pub(super) static WIND: Table = Table {
         key("precursor", Holds::Text, "", Otherwise("none"), "In place of `planes`, with `flow.solver = \"lattice\"`: folder that `wakemix inflow precursor` has left, relative to this file. Its planes come in at the inlet with their temperature, as those of `planes` do, and the air of the domain is its atmosphere: stratified, on a rotating earth, driven by the same pressure gradient, cooled or heated by the same ground, which `flow.ground` must name. Above the planes the mean wind and temperature are those of the precursor's box, which the domain must not rise above; beside them the mean blows, unless `beyond_planes` says otherwise. A cell takes 34 bytes more, and a third more time or less."),
         key("precursor_wind", Holds::Choice(&["planes", "beside"]), "", Value("\"planes\""), "Which wind of `precursor` comes in. `planes`: that of its record. `beside`: that of its box, which goes on from where the precursor stands, step by step beside each run: nothing ends, nothing comes round, no planes are in memory, and with `flow.sides = \"open\"` what comes in through the sides is the same air at the same time. It costs the precursor's steps and memory in each run. Its box ought to be longer and wider than the domain, which else meets the same eddies twice."),
         key("beyond_planes", Holds::Choice(&["repeat", "mean", "hold"]), "", Otherwise("refused; a HAWC2 box is repeated; `mean` with `precursor`"), "With `planes` or `precursor` and the lattice: what blows where the domain is wider or higher than the grid of the file. `repeat`: its turbulence again, to the sides and upwards, for files of Mann's model, which have no seam there. `mean`: the mean wind of the nearest row without turbulence, which fades over a tenth of the grid's width or height. `hold`: the turbulence of the edge. In each of them the mean wind above the grid goes on in proportion to the profile of this case, or as `precursor` has it."),
+        key("cut", Holds::Table(&CUT), "", Otherwise("all of the file"), "With `planes`: the part of the file that is the wind, a window of time on a rectangle anywhere in it."),
         key("table", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"uniform\"` or `\"vortex\"` (the lattice takes none: it would answer wind that changes everywhere at once with pressure waves): file with the wind over time, relative to this file: OpenFAST's uniform wind (`.wnd` or `.hh` with time, speed, direction, vertical speed, horizontal shear, exponent, linear shear, gust), or CSV with columns `time_s`, `speed_m_s` and, where wanted, `direction_deg` (counter-clockwise seen from above), `vertical_m_s`, `horizontal_shear`, `shear_exponent`, `vertical_shear`, `gust_m_s`. Lines join its rows, rows of equal time are a step, and it must last as long as the run. Shears are over the first turbine's diameter. `speed` then only sets the Strouhal numbers and the rotor's first speed; the profile is that of the case where the table has no exponent."),
         key("veer_deg_per_m", from(-1.0, 1.0), "deg/m", Value("0"), "Veer: per metre upwards the mean wind turns by so much, clockwise seen from above, as it does in the boundary layer of the northern hemisphere; at hub height it blows along x. Not with `planes` or `precursor`; with `flow.solver = \"lattice\"` between periodic or open sides, and by 60° at most up to the top of the domain.")
             .mistaken(&[Slip { unit: "deg per 100 m", factor: 0.01 }]),
@@ -353,7 +356,7 @@ pub(super) static OUTPUT: Table = Table {
             Holds::Outputs,
             "",
             Otherwise("none"),
-            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. `phase-averages` comes with the program; programs built on it add theirs.",
+            "Further outputs, each with a name of its own: `further.NAME = { kind = … }`. `phase-averages` and `wind-slices` come with the program; programs built on it add theirs.",
         ),
     ],
 };

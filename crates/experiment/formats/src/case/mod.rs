@@ -5,6 +5,7 @@
 
 mod campaign;
 mod check;
+mod cut;
 mod difference;
 mod document;
 mod error;

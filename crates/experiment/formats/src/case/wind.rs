@@ -1,5 +1,6 @@
 //! `[wind]`: its keys and what ties them to what moves the air, read and written.
 
+use super::cut::{check_cut, cut_of, cut_text};
 use super::document::{Entry, Node, Value};
 use super::error::ProblemKind;
 use super::keys::{self, EVENTS};
@@ -34,6 +35,7 @@ pub(super) fn wind_of(section: &Option<Section>) -> Wind {
             .as_ref()
             .is_some_and(|section| section.choice("precursor_wind") == BESIDE),
         beyond_planes: section.as_ref().and_then(beyond_of),
+        cut: section.as_ref().and_then(cut_of),
         table: section.as_ref().and_then(|section| section.optional_text("table")),
         veer: number("veer_deg_per_m").to_radians(),
         event: section.as_ref().and_then(|section| {
@@ -96,6 +98,7 @@ pub(super) fn check_together(section: &Section, wind: &Wind, flow: &Flow, durati
         check_table(section, wind, flow);
     }
     check_precursor(section, wind, flow);
+    check_cut(section, wind);
     if wind.beyond_planes.is_some()
         && (!wind.brings_planes() || flow.solver.wind.of(wind) != WindSource::AtInlet)
     {
@@ -328,6 +331,9 @@ pub(super) fn write_wind(text: &mut String, wind: &Wind) -> std::fmt::Result {
     if let Some(beyond) = wind.beyond_planes {
         let name = BEYOND.iter().find(|(_, one)| *one == beyond).map_or("", |(name, _)| name);
         writeln!(text, "beyond_planes = \"{name}\"")?;
+    }
+    if let Some(cut) = &wind.cut {
+        writeln!(text, "cut = {}", cut_text(cut))?;
     }
     if let Some(table) = &wind.table {
         writeln!(text, "table = {}", quoted(table))?;

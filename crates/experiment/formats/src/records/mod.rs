@@ -11,6 +11,7 @@ mod precursor;
 mod scans;
 mod series;
 mod series_file;
+mod slices;
 mod study;
 #[cfg(test)]
 mod summary_page;
@@ -94,9 +95,9 @@ impl RunFolder {
         for file in [summary, self.checkpoint_path(), series, part, self.manifest_path()] {
             gone(fs::remove_file(&file), &file)?;
         }
-        self.remove_named(INFLOW, "")?;
-        self.remove_named(SCANS, "")?;
-        self.remove_named(phase_averages::AVERAGES, "")?;
+        for beginning in [INFLOW, slices::SLICES, SCANS, phase_averages::AVERAGES] {
+            self.remove_named(beginning, "")?;
+        }
         self.remove_named("", OUTB)?;
         for folder in [self.planes_path(), self.volumes_path()] {
             gone(fs::remove_dir_all(&folder), &folder)?;
@@ -167,6 +168,7 @@ impl RunFolder {
     /// [`FileError::System`].
     pub fn remove_checkpoint(&self) -> Result<(), FileError> {
         self.remove_named(INFLOW, ".part")?;
+        self.remove_named(slices::SLICES, ".part")?;
         gone(fs::remove_file(self.checkpoint_path()), &self.checkpoint_path())
     }
 

@@ -62,6 +62,14 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
     start(path).map(|(planes, _)| planes)
 }
 
+/// Hub height of the full field at `path` (m).
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn hub_height(path: &Path) -> Result<f64, FileError> {
+    start(path).map(|(_, hub_height)| hub_height)
+}
+
 /// Planes with the hub height (m).
 fn start(path: &Path) -> Result<(PackedPlanes, f64), FileError> {
     let refused = |source| FileError::system("read", WHAT, path, source);

@@ -86,6 +86,7 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
         lowest_height,
         mean_speeds,
         description,
+        ..
     } = source.outline();
     let paths = &files_of(path)[1..];
     let name = |component: usize| {
@@ -138,6 +139,14 @@ pub(super) fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(std::iter::once(path.to_owned()).chain(binaries).collect())
 }
 
+/// Hub height of the box whose header is at `path` (m).
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn hub_height(path: &Path) -> Result<f64, FileError> {
+    Ok(read_header(path)?.wind.hub_height)
+}
+
 /// Reads the header at `path` and the binaries that it names, beside it.
 ///
 /// # Errors
@@ -163,6 +172,7 @@ pub(super) fn stream(path: &Path) -> Result<impl Source + use<>, FileError> {
         lowest_height,
         mean_speeds,
         description: header.description,
+        repeats: true,
     };
     let velocity = std::array::from_fn(|_| vec![0.0; n_points[1] * n_points[2]]);
     Ok(HawcSource { components, outline, velocity })

@@ -11,6 +11,7 @@ mod bladed;
 mod blocks;
 mod hawc;
 mod maker;
+mod of_planes;
 mod packed;
 mod recorder;
 mod source;
@@ -19,6 +20,7 @@ mod turbsim;
 pub use bladed::{open as open_bladed, read as read_bladed, write as write_bladed};
 pub use hawc::{Axis, open as open_hawc, read as read_hawc, write as write_hawc};
 pub use maker::{KAIMAL, maker_with_divergence};
+pub use of_planes::{Origin, check_once, write_planes};
 pub use recorder::{Carried, WindRecorder};
 pub use source::{Outline, Source};
 pub use turbsim::{open as open_turbsim, read as read_turbsim, write as write_turbsim};
@@ -71,6 +73,18 @@ pub fn open(path: &Path) -> Result<Box<dyn Planes>, FileError> {
         Kind::TurbSim => Box::new(turbsim::open(path)?),
         Kind::Bladed => Box::new(bladed::open(path)?),
     })
+}
+
+/// Hub height of the box at `path` (m).
+///
+/// # Errors
+/// As [`read`].
+pub fn hub_height(path: &Path) -> Result<f64, FileError> {
+    match kind(path)? {
+        Kind::Hawc(header) => hawc::hub_height(&header),
+        Kind::TurbSim => turbsim::hub_height(path),
+        Kind::Bladed => bladed::hub_height(path),
+    }
 }
 
 /// Paths of all files that the box at `path` is read from: its own first, then those that belong to it.

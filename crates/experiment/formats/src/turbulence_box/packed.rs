@@ -78,6 +78,8 @@ impl PackedPlanes {
             lowest_height: grid.first[1],
             mean_speeds: means.clone(),
             description,
+            // Whoever asks for a box takes what the file holds for one.
+            repeats: true,
         };
         let velocity = std::array::from_fn(|_| vec![0.0; grid.n_y * grid.n_z]);
         let mut source = PackedSource { planes: self, outline, velocity };

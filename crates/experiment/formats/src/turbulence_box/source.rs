@@ -22,6 +22,8 @@ pub struct Outline {
     pub mean_speeds: Vec<f64>,
     /// Where it comes from, in words.
     pub description: String,
+    /// Whether its first plane follows its last; a box does, a part of a record does not.
+    pub repeats: bool,
 }
 
 impl Outline {
@@ -60,6 +62,7 @@ impl Source for &StoredBox {
             lowest_height: self.lowest_height,
             mean_speeds: self.mean_speeds.clone(),
             description: self.description.clone(),
+            repeats: true,
         }
     }
 

@@ -75,6 +75,14 @@ pub fn open(path: &Path) -> Result<impl Planes + use<>, FileError> {
     start(path).map(|(planes, ..)| planes)
 }
 
+/// Hub height of the full field at `path` (m).
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn hub_height(path: &Path) -> Result<f64, FileError> {
+    start(path).map(|(_, header, _)| header.hub_height)
+}
+
 /// Where the full field at `path` says that it comes from.
 ///
 /// # Errors
@@ -115,7 +123,7 @@ fn start(path: &Path) -> Result<(PackedPlanes, Header, String), FileError> {
     Ok((PackedPlanes::new(file, path, WHAT, packing), header, description))
 }
 
-/// Writes the box of `source` to `path`: a record that repeats, interval = spacing along x over hub speed.
+/// Writes the box of `source` to `path`: interval = spacing along x over hub speed.
 ///
 /// Values are rounded to 1/65535 of their range, a few 1e-5 of it, for which all planes are read twice; the
 /// description to 200 characters of ASCII.
@@ -135,7 +143,7 @@ pub fn write(path: &Path, source: &mut dyn Source) -> Result<(), FileError> {
         interval: spacing_x / outline.hub_speed,
         speed: outline.hub_speed,
         n_steps: n_x,
-        repeats: true,
+        repeats: outline.repeats,
     };
     let mut field = Field::create(path, &grid, outline.hub_height, ranges, &outline.description)?;
     for step in 0..n_x {

@@ -23,7 +23,9 @@ mod section;
 pub(crate) mod series;
 pub(crate) mod slices;
 pub(crate) mod volumes;
+mod wind_record;
 mod wind_records;
+pub(crate) mod wind_slices;
 mod writers;
 
 pub use output::{Begin, FedBy, Keys, Output, OutputKind, OwnKeys, Scene};
@@ -39,7 +41,7 @@ use farm::outputs::OUTPUTS;
 use std::sync::Once;
 
 /// The kinds of output that every study has; they finish in this order.
-pub static STANDARD: [&OutputKind; 12] = [
+pub static STANDARD: [&OutputKind; 13] = [
     &series::KIND,
     &mean_planes::KIND,
     &phase_planes::KIND,
@@ -49,6 +51,7 @@ pub static STANDARD: [&OutputKind; 12] = [
     &filaments::KIND,
     &cores::KIND,
     &wind_records::KIND,
+    &wind_slices::KIND,
     &scans::KIND,
     &phase_averages::KIND,
     // From the complete series.

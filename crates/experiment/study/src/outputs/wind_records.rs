@@ -4,22 +4,17 @@
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
 use super::section::{Section, Stored};
+use super::wind_record::{POINT_BYTES, Recorded, WindRecord};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
-use basis::Vector3;
 use basis::keys::Values;
 use farm::case::Run;
-use flow::WindField;
 use flow::inflow::PlaneGrid;
-use formats::turbulence_box::{Carried, WindRecorder};
 
 /// Air around the rotor that is kept (rotor diameters): tower tops sway, and rotors are displaced.
 const MARGIN: f64 = 0.1;
 /// Cells that the wind crosses between two planes, at most (–).
 const CELLS_BETWEEN: f64 = 0.5;
-/// Bytes of a point: three components as they come, which stay until the run is complete, and three of the
-/// full field.
-const POINT_BYTES: u64 = 3 * (size_of::<f32>() + size_of::<i16>()) as u64;
 
 pub(super) static KIND: OutputKind = OutputKind {
     name: "wind records",
@@ -80,17 +75,6 @@ struct WindRecords {
     records: Vec<WindRecord>,
 }
 
-/// One record under way, with room to work in.
-struct WindRecord {
-    recorder: WindRecorder,
-    grid: PlaneGrid,
-    hub_height: f64,
-    description: String,
-    positions: Vec<Vector3>,
-    velocities: Vec<Vector3>,
-    wind: Vec<[f32; 3]>,
-}
-
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
     let Scene { setup, run, .. } = *scene;
     if places(setup, run).next().is_none() {
@@ -100,7 +84,7 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
     let n_bytes: Option<Vec<u64>> = stored.map(Stored::state).transpose()?;
     let records = places(setup, run).enumerate().map(|(place, index)| {
         let n_bytes = n_bytes.as_ref().and_then(|n_bytes| n_bytes.get(place)).copied();
-        WindRecord::begin(scene, index, n_bytes)
+        record(scene, index, n_bytes)
     });
     let records = records.collect::<Result<_, _>>()?;
     Ok(Some(Box::new(WindRecords { schedule: schedule(setup), records })))
@@ -116,56 +100,25 @@ impl Output for WindRecords {
     }
 
     fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
-        let flushed = self.records.iter_mut().map(|record| record.recorder.flush());
+        let flushed = self.records.iter_mut().map(WindRecord::flush);
         let n_bytes: Vec<u64> = flushed.collect::<Result<_, _>>()?;
         section.keep(&n_bytes)
     }
 
     fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
-        for WindRecord { recorder, grid, hub_height, description, .. } in &mut self.records {
-            recorder.finish(grid, *hub_height, Carried::Middle, description)?;
-        }
-        Ok(())
+        self.records.iter_mut().try_for_each(WindRecord::finish)
     }
 }
 
-impl WindRecord {
-    /// Begins the record at the place of turbine number `index`, or goes on with it after its first
-    /// `n_bytes`.
-    fn begin(scene: &Scene, index: usize, n_bytes: Option<u64>) -> Result<Self, StudyError> {
-        let Scene { setup, run, folder, .. } = *scene;
-        let (grid, foot) = (grid(setup, index), setup.plan.positions[index]);
-        let positions: Vec<Vector3> = (0..grid.n_z)
-            .flat_map(|row| (0..grid.n_y).map(move |column| (row, column)))
-            .map(|(row, column)| {
-                let y = grid.first[0] + column as f64 * grid.spacing[0];
-                let z = grid.first[1] + row as f64 * grid.spacing[1];
-                Vector3::new(foot.x, foot.y + y, z)
-            })
-            .collect();
-        let name = &setup.case.turbines[index].name;
-        let (path, n_points) = (folder.inflow_path(name), positions.len());
-        let recorder = match n_bytes {
-            Some(n_bytes) => WindRecorder::resume(&path, n_points, n_bytes)?,
-            None => WindRecorder::create(&path, n_points)?,
-        };
-        Ok(Self {
-            recorder,
-            hub_height: setup.models[index].definition.rotor.hub_height,
-            description: format!("wakemix: {}, run {}, at {name}", setup.case.name, run.name),
-            velocities: vec![Vector3::ZERO; n_points],
-            wind: vec![[0.0; 3]; n_points],
-            positions,
-            grid,
-        })
-    }
-
-    /// Keeps the wind of `field` now.
-    fn write(&mut self, field: &impl WindField) -> Result<(), StudyError> {
-        field.sample(&self.positions, &mut self.velocities);
-        for (wind, velocity) in self.wind.iter_mut().zip(&self.velocities) {
-            *wind = [velocity.x, velocity.y, velocity.z].map(|component| component as f32);
-        }
-        Ok(self.recorder.write(&self.wind)?)
-    }
+/// Begins the record at the place of turbine number `index`, or goes on with it after its first `n_bytes`.
+fn record(scene: &Scene, index: usize, n_bytes: Option<u64>) -> Result<WindRecord, StudyError> {
+    let Scene { setup, run, folder, .. } = *scene;
+    let name = &setup.case.turbines[index].name;
+    let recorded = Recorded {
+        grid: grid(setup, index),
+        foot: setup.plan.positions[index],
+        hub_height: setup.models[index].definition.rotor.hub_height,
+        description: format!("wakemix: {}, run {}, at {name}", setup.case.name, run.name),
+    };
+    WindRecord::begin(&folder.inflow_path(name), recorded, n_bytes)
 }

@@ -3,12 +3,13 @@
 //! [`MeanProfile`] alone is steady wind, [`DeterministicWind`] adds veer and one event; [`mann::generate`]
 //! and [`kaimal::generate`] make a [`TurbulenceBox`]. For a solver's inlet [`TurbulentInflow`] carries it
 //! past the farm on top of a profile, [`sizing`] says how large it must be, and [`RecordedInflow`] brings
-//! the planes of a file. Without a flow solver,
+//! the planes of a file, or what [`CutPlanes`] takes of them. Without a flow solver,
 //! [`PrescribedWind`] is the flow: any of these winds, or [`Planes`] that come from a file one by one.
 //! Sources: Mann (1994) J. Mann, J. Fluid Mech. 273 (1994) 141-168; Mann (1998) J. Mann, Probabilistic
 //! Engineering Mechanics 13 (1998) 269-282.
 
 pub mod column;
+pub mod cut;
 pub mod deterministic;
 pub mod iec;
 pub mod kaimal;
@@ -30,6 +31,7 @@ pub mod turbulent;
 mod walk;
 
 pub use column::{ColumnLevel, MeanColumn};
+pub use cut::{Cut, CutError, CutPlanes};
 pub use deterministic::DeterministicWind;
 pub use planes::{PlaneGrid, Planes};
 pub use prescribed::PrescribedWind;

@@ -240,6 +240,10 @@ impl Header {
     }
 }
 
+/// What says in a summary of ours, in capitals, that the record ends. OpenFAST takes any line with the word
+/// PERIODIC, negated or not, for a record that repeats.
+const ONCE: &str = "DOES NOT REPEAT";
+
 /// What a summary beside a file says; without one, what is taken for granted.
 pub(super) struct Summary {
     /// Intensities of u, v, w (%).
@@ -286,6 +290,8 @@ impl Summary {
                 summary.hub_height = number()?;
             } else if upper.contains("HEIGHT OFFSET") {
                 summary.height_offset = number()?.unwrap_or(0.0);
+            } else if upper.contains(ONCE) {
+                repeats = Some(false);
             } else if upper.contains("PERIODIC") {
                 repeats = Some(!upper.contains("NON-PERIODIC") && !upper.contains("NOT PERIODIC"));
             }
@@ -371,12 +377,17 @@ pub(super) fn summary(outline: &Outline, intensities: [f32; 3]) -> String {
          \x20  TI(w) = {w:.6} %\n\n\
          \x20  Height Offset = {:.4} m\n\
          \x20  Grid Base     = {:.4} m\n\n\
-         Creating a PERIODIC output file.\n",
+         {}\n",
         outline.description,
         outline.hub_height,
         (n_y - 1) as f64 * spacing_y,
         outline.hub_speed,
         outline.hub_height - outline.lowest_height - 0.5 * height,
         outline.lowest_height,
+        if outline.repeats {
+            "Creating a PERIODIC output file."
+        } else {
+            "The record does not repeat."
+        },
     )
 }
