@@ -141,7 +141,7 @@ impl Prepared {
         let least = if self.memory_beside > 0 { STEPS_BESIDE } else { 1 };
         while is_sound
             && u64::from(n_steps) < most
-            && (n_steps % in_one != 0 || n_steps < least || started.elapsed() < TIMED)
+            && (!n_steps.is_multiple_of(in_one) || n_steps < least || started.elapsed() < TIMED)
         {
             is_sound = advance();
             n_steps += 1;
