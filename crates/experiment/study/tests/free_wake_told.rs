@@ -200,7 +200,7 @@ fn a_rotor_that_turns_faster_than_its_steps_are_made_for_ends_its_run_with_a_fix
     let error = small::run(&options(folder.path())).expect_err("it turns too far");
     assert!(matches!(error, StudyError::Diverged { .. }), "{error:?}");
     let text = error.to_string();
-    assert!(text.contains("run fast ended early: a rotor turned by 4"), "{text}");
+    assert!(text.contains("run fast ended early: a rotor turned by 50°"), "{text}");
     let help = error.help().expect("a fix").to_string();
     assert!(help.contains("lower flow.step or raise flow.steps_per_turn"), "{help}");
 }

@@ -13,6 +13,7 @@ use formats::records::read_series;
 use small::{HALFWAY, NREL_5MW, STOP, written};
 use std::fs;
 use std::path::Path;
+use std::sync::Mutex;
 use study::outputs::{FedBy, Keys, Output, OutputKind, OwnKeys, Scene, Schedule, Section, Stored};
 use study::{Outcome, Outputs, Silent, StudyError, StudyOptions};
 
@@ -135,6 +136,9 @@ fn options(folder: &Path, output: &str) -> StudyOptions {
 
 /// What becomes of a study with `outputs` that may be stopped.
 fn run(options: &StudyOptions, outputs: &Outputs) -> Result<Outcome, StudyError> {
+    // One at a time: another test's study would stop with it.
+    static STOPPING: Mutex<()> = Mutex::new(());
+    let _alone = STOPPING.lock();
     STOP.store(false, std::sync::atomic::Ordering::Relaxed);
     study::run_with(options, outputs, &STOP, &mut Silent)
 }
