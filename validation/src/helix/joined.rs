@@ -13,14 +13,15 @@ const SOURCE: &str = "van Vondelen et al., Wind Energ. Sci. 10 (2025) 2411";
 /// A smaller and coarser `precursor-seed-000`, so that it can be waited for.
 const SMALLER: [&str; 5] =
     ["box.length=3360", "box.width=2800", "box.height=1120", "box.cell=28", "time.spin_up=21600"];
-/// Mean wind (m/s) and turbulence intensity (%, of the wind along its mean) at the hub that the study aimed at.
+/// Mean wind (m/s) and turbulence intensity (%, of the wind along its mean) at the hub that the study aimed
+/// at.
 const HUB_WIND: f64 = 10.5;
 const INTENSITY: f64 = 5.0;
 /// Runs of `synchronised-offshore` with their offsets (deg), a right angle apart.
 const OFFSETS: [(&str, f64); 4] =
     [("offset-060", 60.0), ("offset-150", 150.0), ("offset-240", 240.0), ("offset-330", 330.0)];
-/// Published changes of T2 and T3 together at the best and at the worst offsets ("over 6 %", %), and where the
-/// best one is (deg); accepted are half of the gain, and half of the way between two offsets here.
+/// Published changes of T2 and T3 together at the best and at the worst offsets ("over 6 %", %), and where
+/// the best one is (deg); accepted are half of the gain, and half of the way between two offsets here.
 const BEST: f64 = 5.0;
 const WORST: f64 = -6.0;
 const CHANGE: f64 = 2.5;

@@ -144,8 +144,8 @@ impl ControllerKind for ProbingKind {
     }
 }
 
-/// Whether an actuator of the rate `most` (rad/s) follows a wave of the size `noise` (rad) at the upper end of
-/// its band, `upper` (rad/s).
+/// Whether an actuator of the rate `most` (rad/s) follows a wave of the size `noise` (rad) at the upper end
+/// of its band, `upper` (rad/s).
 ///
 /// # Errors
 /// [`ControlError::NoiseTooFast`].

@@ -14,8 +14,8 @@ use crate::{FlowError, FlowSolver, WindField};
 use basis::{Answer, PointForce, Vector3};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Farthest that a rotor may turn in a step (rad) at the speed that it is expected to have: beyond it the wake
-/// is no helix.
+/// Farthest that a rotor may turn in a step (rad) at the speed that it is expected to have: beyond it the
+/// wake is no helix.
 pub const FARTHEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
 /// The same of any step made (rad), for the speed of a rotor swings about the expected one.
 const FARTHEST_STEP: f64 = 48.0 * std::f64::consts::PI / 180.0;
