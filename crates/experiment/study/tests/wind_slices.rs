@@ -8,7 +8,7 @@ use formats::turbulence_box;
 use small::{HALFWAY, STOP, written};
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use study::{Outcome, Outputs, Prepared, Sample, Silent, StudyError, StudyOptions};
 
 /// A turbine in steady, sheared wind on few cells; slices before it and in its wake, where another stands.
@@ -184,7 +184,9 @@ fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
         overrides: vec!["time.duration=40".to_owned(), "wind.cut.duration=41".to_owned()],
         ..StudyOptions::default()
     };
-    let error = study::run_with(&options, &Outputs::standard(), &STOP, &mut Silent).err();
+    // The other trial's break is none of this one's.
+    let stop = AtomicBool::new(false);
+    let error = study::run_with(&options, &Outputs::standard(), &stop, &mut Silent).err();
     let error = miette::Report::new(error.expect("it is refused"));
     let told = format!("{error:?}");
     assert!(
