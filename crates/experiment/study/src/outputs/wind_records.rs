@@ -3,8 +3,8 @@
 
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
 use super::schedule::Schedule;
-use super::section::{Section, Stored};
-use super::wind_record::{POINT_BYTES, Recorded, WindRecord};
+use super::section::Stored;
+use super::wind_record::{POINT_BYTES, Recorded, WindRecords};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use basis::keys::Values;
@@ -70,55 +70,20 @@ fn disk(setup: &Prepared, run: &Run, _: &Values) -> u64 {
     schedule(setup).count(setup.plan.n_steps) * n_points as u64 * POINT_BYTES
 }
 
-struct WindRecords {
-    schedule: Schedule,
-    records: Vec<WindRecord>,
-}
-
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
-    let Scene { setup, run, .. } = *scene;
+    let Scene { setup, run, folder, .. } = *scene;
     if places(setup, run).next().is_none() {
         return Ok(None);
     }
-    // So many bytes of each are sure.
-    let n_bytes: Option<Vec<u64>> = stored.map(Stored::state).transpose()?;
-    let records = places(setup, run).enumerate().map(|(place, index)| {
-        let n_bytes = n_bytes.as_ref().and_then(|n_bytes| n_bytes.get(place)).copied();
-        record(scene, index, n_bytes)
+    let wanted = places(setup, run).map(|index| {
+        let name = &setup.case.turbines[index].name;
+        let recorded = Recorded {
+            grid: grid(setup, index),
+            foot: setup.plan.positions[index],
+            hub_height: setup.models[index].definition.rotor.hub_height,
+            description: format!("wakemix: {}, run {}, at {name}", setup.case.name, run.name),
+        };
+        (folder.inflow_path(name), recorded)
     });
-    let records = records.collect::<Result<_, _>>()?;
-    Ok(Some(Box::new(WindRecords { schedule: schedule(setup), records })))
-}
-
-impl Output for WindRecords {
-    fn schedule(&self) -> Schedule {
-        self.schedule
-    }
-
-    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        self.records.iter_mut().try_for_each(|record| record.write(scene.farm.flow()))
-    }
-
-    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
-        let flushed = self.records.iter_mut().map(WindRecord::flush);
-        let n_bytes: Vec<u64> = flushed.collect::<Result<_, _>>()?;
-        section.keep(&n_bytes)
-    }
-
-    fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
-        self.records.iter_mut().try_for_each(WindRecord::finish)
-    }
-}
-
-/// Begins the record at the place of turbine number `index`, or goes on with it after its first `n_bytes`.
-fn record(scene: &Scene, index: usize, n_bytes: Option<u64>) -> Result<WindRecord, StudyError> {
-    let Scene { setup, run, folder, .. } = *scene;
-    let name = &setup.case.turbines[index].name;
-    let recorded = Recorded {
-        grid: grid(setup, index),
-        foot: setup.plan.positions[index],
-        hub_height: setup.models[index].definition.rotor.hub_height,
-        description: format!("wakemix: {}, run {}, at {name}", setup.case.name, run.name),
-    };
-    WindRecord::begin(&folder.inflow_path(name), recorded, n_bytes)
+    WindRecords::begin(schedule(setup), wanted, stored)
 }

@@ -6,9 +6,8 @@
 mod keys;
 
 use super::output::{FedBy, Keys, Output, OutputKind, Scene};
-use super::schedule::Schedule;
-use super::section::{Section, Stored};
-use super::wind_record::{POINT_BYTES, POINT_MEMORY, Recorded, WindRecord};
+use super::section::Stored;
+use super::wind_record::{POINT_BYTES, POINT_MEMORY, Recorded, WindRecords};
 use crate::error::StudyError;
 use crate::prepared::Prepared;
 use crate::slice_layout::{KIND_NAME, Laid, Slices};
@@ -43,19 +42,11 @@ fn disk(setup: &Prepared, _: &Run, values: &Values) -> u64 {
     slices.schedule().count(setup.plan.n_steps) * slices.n_points() * POINT_BYTES
 }
 
-struct WindSlices {
-    schedule: Schedule,
-    records: Vec<WindRecord>,
-}
-
 fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>>, StudyError> {
     let Scene { setup, run, folder, name, values, .. } = *scene;
     let Some(slices) = of(setup, values) else { return Ok(None) };
-    // So many bytes of each are sure.
-    let n_bytes: Option<Vec<u64>> = stored.map(Stored::state).transpose()?;
     let turbine = &setup.case.turbines[slices.turbine].name;
-    let record = |(place, &distance): (usize, &f64)| {
-        let n_bytes = n_bytes.as_ref().and_then(|n_bytes| n_bytes.get(place)).copied();
+    let wanted = slices.distances().iter().map(|&distance| {
         let slice = format!("{distance}D");
         let recorded = Recorded {
             grid: slices.grid(),
@@ -66,30 +57,9 @@ fn begin(scene: &Scene, stored: Option<Stored>) -> Result<Option<Box<dyn Output>
                 setup.case.name, run.name
             ),
         };
-        WindRecord::begin(&folder.slice_path(name, &slice), recorded, n_bytes)
-    };
-    let records = slices.distances().iter().enumerate().map(record).collect::<Result<_, _>>()?;
-    Ok(Some(Box::new(WindSlices { schedule: slices.schedule(), records })))
-}
-
-impl Output for WindSlices {
-    fn schedule(&self) -> Schedule {
-        self.schedule
-    }
-
-    fn write(&mut self, scene: &Scene) -> Result<(), StudyError> {
-        self.records.iter_mut().try_for_each(|record| record.write(scene.farm.flow()))
-    }
-
-    fn checkpoint(&mut self, section: Section) -> Result<(), StudyError> {
-        let flushed = self.records.iter_mut().map(WindRecord::flush);
-        let n_bytes: Vec<u64> = flushed.collect::<Result<_, _>>()?;
-        section.keep(&n_bytes)
-    }
-
-    fn finish(&mut self, _scene: &Scene) -> Result<(), StudyError> {
-        self.records.iter_mut().try_for_each(WindRecord::finish)
-    }
+        (folder.slice_path(name, &slice), recorded)
+    });
+    WindRecords::begin(slices.schedule(), wanted, stored)
 }
 
 #[cfg(test)]
