@@ -2,6 +2,7 @@
 
 mod air;
 mod elsewhere;
+mod loops;
 mod tunnel;
 mod vortices;
 
@@ -61,9 +62,11 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     vortices::VORTICES,
     vortices::ROTOR,
+    vortices::CHOICES,
     vortices::BUDGET,
     vortices::WAKE,
     vortices::HELIX,
+    vortices::AMPLITUDE,
     vortices::OPEN_LOOP,
     vortices::SHEAR,
     Validation {
@@ -336,15 +339,7 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "control-design",
         recorded: include_str!("../recorded/identification.toml"),
     },
-    Validation {
-        name: "lidar-loop",
-        about: "a model of a free wake's answer to its helix, a controller for it, and the loop that a lidar closes, beside a published study",
-        cost: Cost::Minutes(8),
-        run: crate::lidar_loop::lidar_loop,
-        pictures: None,
-        page: "control-design",
-        recorded: include_str!("../recorded/lidar-loop.toml"),
-    },
+    loops::LIDAR_LOOP,
     Validation {
         name: "synthesis",
         about: "H-infinity controllers of ten plants beside SLICOT's, and beside what no controller can do better",

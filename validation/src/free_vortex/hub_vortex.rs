@@ -22,6 +22,9 @@ const N_DRAWS: usize = 12;
 const AMPLITUDES: [f64; 2] = [1.0, 6.0];
 const STROUHALS: [f64; 2] = [0.1, 0.4];
 const SEED: u64 = 3;
+/// Amplitudes (deg) of helices at one Strouhal number (–).
+const GROWING: [f64; 4] = [1.5, 3.0, 4.5, 5.8];
+const FIXED: f64 = 0.3;
 /// Wind (m/s) and rotor diameter (m) of the case.
 const WIND: f64 = 10.0;
 const DIAMETER: f64 = 126.0;
@@ -72,6 +75,34 @@ pub(super) fn rows() -> Vec<Row> {
         }
     }
     (0..FILTERS.len()).flat_map(|filter| of_filter(filter, &draws)).collect()
+}
+
+/// Correlation of the radius with the amplitude at one Strouhal number by each filter, and the table of
+/// helices on standard error.
+pub(super) fn rows_at_one_strouhal() -> Vec<Row> {
+    let mut helices = Vec::new();
+    for (number, amplitude) in GROWING.into_iter().enumerate() {
+        match followed(&format!("free-vortex-amplitude-{}", number + 1), amplitude, FIXED) {
+            Ok(helix) => helices.push(helix),
+            Err(problem) => return failure(problem),
+        }
+    }
+    let row = |(filter, (_, by)): (usize, (&str, &str))| {
+        print_draws(filter, &helices);
+        let radii: Vec<f64> = helices.iter().map(|helix| helix.circles[filter].radius).collect();
+        Row {
+            what: format!(
+                "hub vortex at 1 D{by}, {} helices of 1.5 to 5.8° at St {FIXED}, nrel-5mw, {WIND} m/s even: correlation of its radius with the amplitude",
+                GROWING.len()
+            ),
+            measured: correlation(&radii, &GROWING),
+            expected: OF_RADIUS,
+            tolerance: AtLeast,
+            unit: "–",
+            source: SOURCE,
+        }
+    };
+    FILTERS.into_iter().enumerate().map(row).collect()
 }
 
 /// The two correlations by filter number `filter`. Radii fall with the Strouhal number as well as they grow
@@ -138,6 +169,12 @@ fn drawn(number: usize, random: &mut Random) -> Result<Draw, String> {
     // Whole hundredths and thousandths: what is printed is what was run.
     let amplitude = (100.0 * between(AMPLITUDES)).round() / 100.0;
     let strouhal = (1000.0 * between(STROUHALS)).round() / 1000.0;
+    followed(&format!("free-vortex-helix-{number:02}"), amplitude, strouhal)
+}
+
+/// Runs a helix of this `amplitude` (deg) and Strouhal number (–) as study `name`, or takes up what is there,
+/// and follows the hub vortex.
+fn followed(name: &str, amplitude: f64, strouhal: f64) -> Result<Draw, String> {
     let period = DIAMETER / (strouhal * WIND);
     let spin_up = period + PASSING;
     let overrides = vec![
@@ -147,8 +184,7 @@ fn drawn(number: usize, random: &mut Random) -> Result<Draw, String> {
         format!("time.duration={:.1}", spin_up + RECORD),
     ];
     let case = Carried::Own(include_str!("../../cases/hub-vortex.toml"));
-    let name = format!("free-vortex-helix-{number:02}");
-    let (_, folder) = summaries(case, &name, overrides)?;
+    let (_, folder) = summaries(case, name, overrides)?;
     let path = RunFolder::new(&folder, "helix").scans_path("T1", "lidar");
     let scans = read_scans(&path).map_err(|error| error.to_string())?;
     let circles =

@@ -52,10 +52,30 @@ pub(super) const HELIX: Validation = Validation {
     recorded: include_str!("../../recorded/free-vortex-helix.toml"),
 };
 
+pub(super) const AMPLITUDE: Validation = Validation {
+    name: "free-vortex-amplitude",
+    about: "where the hub vortex of a rotor with a helix and a free wake is at 1 D, against the amplitude of four helices at one Strouhal number, beside a published study",
+    cost: Cost::Minutes(8),
+    run: free_vortex::free_vortex_amplitude,
+    pictures: None,
+    page: "free-vortex",
+    recorded: include_str!("../../recorded/free-vortex-amplitude.toml"),
+};
+
+pub(super) const CHOICES: Validation = Validation {
+    name: "free-vortex-choices",
+    about: "what filaments, rings, near wake and steps of a free wake do to a rotor's power",
+    cost: Cost::Minutes(10),
+    run: free_vortex::free_vortex_choices,
+    pictures: None,
+    page: "free-vortex",
+    recorded: include_str!("../../recorded/free-vortex-choices.toml"),
+};
+
 pub(super) const OPEN_LOOP: Validation = Validation {
     name: "free-vortex-open-loop",
-    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
-    cost: Cost::Minutes(40),
+    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind of three seeds, beside a published study",
+    cost: Cost::Minutes(55),
     run: free_vortex::free_vortex_open_loop,
     pictures: None,
     page: "free-vortex",

@@ -1,7 +1,9 @@
 //! One study as plain data: what the case file says, in SI units.
 
 pub use crate::domain::{Blockage, Domain, Ground, Method, Sides};
+pub use crate::event::{CirclingDisk, WindEvent};
 pub use crate::layout::{FROM_WEST, Position};
+pub use crate::made_grid::MadeGrid;
 pub use crate::outputs::Requested;
 pub use crate::solvers::{Solver, WindSource};
 pub use control::{Control, Sense};
@@ -59,6 +61,8 @@ pub struct Wind {
     pub kinematic_viscosity: f64,
     /// Which turbulence is made, where it is made and not read.
     pub turbulence_model: TurbulenceModel,
+    /// The points on which turbulence is made around the rotors; absent, they follow from the rotors.
+    pub grid: Option<MadeGrid>,
     /// File with the planes of wind that [`Solver::PLANES`] reads, or that enter at the inlet of a domain,
     /// relative to the case file.
     pub planes: Option<String>,
@@ -124,48 +128,6 @@ pub enum Shear {
     },
 }
 
-/// What happens in time in a wind without turbulence. Times in s since the run's start.
-///
-/// It is the [`deterministic::Event`](flow::inflow::deterministic::Event) of the same name, with lengths in
-/// diameters of the first turbine and its hub as the place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum WindEvent {
-    /// The wind changes at all places alike.
-    Everywhere(Change),
-    /// Extreme wind shear over the first turbine's rotor.
-    ExtremeShear {
-        /// Beginning (s).
-        start: f64,
-        /// Duration (s).
-        duration: f64,
-        /// Largest change of speed one radius above the hub (m/s).
-        vertical: f64,
-        /// The same one radius to its left, looking downwind (m/s).
-        horizontal: f64,
-    },
-    /// Slow air that circles around the first turbine's hub.
-    RotatingDisk(CirclingDisk),
-}
-
-/// A disk of slow air that circles, in diameters of the first turbine.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CirclingDisk {
-    /// Speed inside (m/s).
-    pub speed: f64,
-    /// Half-axes along y and z of the ellipse on which its centre runs (diameters).
-    pub offsets_diameters: [f64; 2],
-    /// Radius (diameters).
-    pub radius_diameters: f64,
-    /// Width over which the speed changes at its edge (diameters).
-    pub edge_diameters: f64,
-    /// Strouhal number f D / U of circling at time zero and after the sweep (–).
-    pub strouhal: [f64; 2],
-    /// Duration of the sweep (s).
-    pub sweep: f64,
-    /// Sense of rotation, looking downwind.
-    pub sense: Sense,
-}
-
 /// How turbulence is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TurbulenceModel {
@@ -218,6 +180,8 @@ pub struct Placement {
     /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when
     /// absent.
     pub discon: Option<String>,
+    /// Torque over rotor speed squared below rated (N m s²), on the rotor's side; the model's own when absent.
+    pub torque_gain: Option<f64>,
     /// Foot of the tower on the map.
     pub position: Position,
     /// Turn of the nacelle from facing the mean wind when time begins, counter-clockwise seen from above
@@ -240,12 +204,13 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Name of what stands there: the model, and the input file of its controller where it has one of its
-    /// own. Turbines of one name are alike, machine and controller.
+    /// Name of what stands there: the model, and what its controller has of its own. Turbines of one name are
+    /// alike, machine and controller.
     pub fn machine(&self) -> String {
-        match &self.discon {
-            None => self.model.clone(),
-            Some(discon) => format!("{} under {discon}", self.model),
+        match (&self.discon, self.torque_gain) {
+            (Some(discon), _) => format!("{} under {discon}", self.model),
+            (None, Some(gain)) => format!("{} with a torque of {gain:?} N m s²", self.model),
+            (None, None) => self.model.clone(),
         }
     }
 }

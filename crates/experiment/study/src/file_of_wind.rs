@@ -62,6 +62,21 @@ pub(crate) fn planes(file: &CaseFile, plan: &Plan) -> Result<Option<Box<dyn Plan
     }
 }
 
+/// Whether the points that the case of `file` gives for its turbulence hold the rotors of `site`.
+///
+/// # Errors
+/// [`StudyError::Case`] at `wind.grid`.
+pub(crate) fn check_grid(file: &CaseFile, site: &Site) -> Result<(), StudyError> {
+    match wind::unsuited_grid(site) {
+        None => Ok(()),
+        Some(message) => Err(StudyError::Case(objection(
+            file,
+            &["wind", "grid"],
+            format!("wind.grid does not hold the wind of the rotors: {message}"),
+        ))),
+    }
+}
+
 /// Key of the file that the wind of `case` comes from, and its mean speed at hub height (m/s): that of
 /// `table` over the run, or of `planes`; none where it comes from no file.
 pub(crate) fn recorded_speed(

@@ -70,6 +70,9 @@ pub(crate) fn load(file: &CaseFile) -> Result<Machines, StudyError> {
             machines.texts.insert(table_name, discon.table_text);
             constants = discon.constants;
         }
+        if let Some(gain) = placement.torque_gain {
+            constants.torque_gain = gain;
+        }
         let model = TurbineModel { definition: Arc::new(turbine.definition), constants };
         machines.models.insert(placement.machine(), model);
     }

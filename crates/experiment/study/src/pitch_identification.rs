@@ -131,9 +131,10 @@ impl Prepared {
         let placement = &case.turbines[index];
         let text = |name: &String| self.turbine_texts.get(name).map_or("", String::as_str);
         let turbine = text(&placement.model);
-        let controller: String = match &placement.discon {
-            None => String::new(),
-            Some(path) => text_names(path).iter().map(text).collect(),
+        let controller: String = match (&placement.discon, placement.torque_gain) {
+            (Some(path), _) => text_names(path).iter().map(text).collect(),
+            (None, Some(gain)) => format!(" {gain:?}"),
+            (None, None) => String::new(),
         };
         let needed = match needed {
             Needed::IndividualPitch => format!("individual pitch {INDIVIDUAL_PITCH_STROUHAL:?}"),

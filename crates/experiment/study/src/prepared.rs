@@ -101,6 +101,7 @@ impl Prepared {
         let memory_beside = atmosphere::memory_beside(&case, file.folder())?;
         let site =
             Site { case: &case, plan: &plan, models: &models, surroundings: surroundings.as_ref() };
+        file_of_wind::check_grid(file, &site)?;
         let recorded = file_of_wind::at_inlet(file, &site, planes)?;
         let of_file = file_of_wind::warnings(file, &site, recorded)?;
         let turbulence = wind::turbulence(&site).and_then(|turbulence| turbulence.warning);

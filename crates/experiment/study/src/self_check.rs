@@ -42,10 +42,10 @@ impl Prepared {
         if !self.case.flow.solver.needs_self_check {
             return Ok(ControlFlow::Continue(found));
         }
-        let mut checked: Vec<(&str, Option<&str>, f64)> = Vec::new();
+        let mut checked: Vec<(String, f64)> = Vec::new();
         for (index, placement) in self.case.turbines.iter().enumerate() {
             let (model, spacing) = (&self.models[index], self.plan.spacing_at(index));
-            let machine = (model.definition.name.as_str(), placement.discon.as_deref(), spacing);
+            let machine = (placement.machine(), spacing);
             if checked.contains(&machine) {
                 continue;
             }

@@ -86,6 +86,20 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
         (LATTICE, "height_diameters = 3.0", "height_diameters = 1.0", 15, "outside the domain"),
         (
             PRESCRIBED,
+            "\"kaimal\"",
+            "\"kaimal\"\ngrid = { width = 120.0, height = 170.0, columns = 13, rows = 18 }",
+            7,
+            "and the rotors -63.0 to 63.0 m across and 27.0 to 153.0 m of height: give it a width of 126.0 m and a height of 126.0 m at least",
+        ),
+        (
+            PRESCRIBED,
+            "\"kaimal\"",
+            "\"kaimal\"\ngrid = { width = 179.0, height = 190.0, columns = 20, rows = 20 }",
+            7,
+            "half of its 190 m are below the hub at 90.0 m, and reach into the ground: 180.0 m are the most",
+        ),
+        (
+            PRESCRIBED,
             "\"turbulence\"",
             "\"turbulence\"\nstep = 8.0",
             24,

@@ -15,6 +15,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         name: format!("T{}", index + 1),
         model: "model".to_owned(),
         discon: None,
+        torque_gain: None,
         position: Position::Diameters(position),
         yaw: 0.0,
         pitch_misalignment: Vec::new(),

@@ -63,8 +63,69 @@ pub(super) fn turbulence(site: &Site) -> Option<Turbulence> {
     Some(Turbulence { memory: grid.memory, n_points: grid.n_points, warning })
 }
 
+/// What is wrong with the grid that the case of `site` has given, with the fix: it reaches below the ground,
+/// or not over all rotors. None where it has given none, or none is made.
+pub fn unsuited_grid(site: &Site) -> Option<String> {
+    let given = site.case.wind.grid?;
+    let made = made_grid(site)?;
+    let [low, high] = around_rotors(site);
+    let (side, top) = (0.5 * given.width, made.lowest + given.height);
+    let needed = 2.0 * low.y.abs().max(high.y.abs());
+    if made.lowest < 0.0 {
+        let (most, hub) = (2.0 * site.plan.hub_height, site.plan.hub_height);
+        return Some(format!(
+            "half of its {} m are below the hub at {hub:.1} m, and reach into the ground: {most:.1} m are the most",
+            given.height
+        ));
+    }
+    let beside = low.y < -side || high.y > side;
+    let above = low.z < made.lowest || high.z > top;
+    if !beside && !above {
+        return None;
+    }
+    Some(format!(
+        "it spans {:.1} m to either side and {:.1} to {top:.1} m of height, and the rotors {:.1} to {:.1} m across and {:.1} to {:.1} m of \
+         height: give it a width of {needed:.1} m and a height of {:.1} m at least",
+        side,
+        made.lowest,
+        low.y,
+        high.y,
+        low.z,
+        high.z,
+        2.0 * (site.plan.hub_height - low.z).max(high.z - site.plan.hub_height),
+    ))
+}
+
+/// Plane of the points of turbulence that is made around all rotors.
+struct Across {
+    n_points: [usize; 2],
+    /// Distance of neighbouring points (m).
+    spacing: [f64; 2],
+    /// Height of the lowest row (m).
+    lowest: f64,
+}
+
+/// The points of made turbulence across the wind of `site`; the middle of the width stands at y = 0.
+fn across(site: &Site) -> Across {
+    if let Some(grid) = site.case.wind.grid {
+        return Across {
+            n_points: [grid.columns, grid.rows],
+            spacing: grid.spacing(),
+            lowest: site.plan.hub_height - 0.5 * grid.height,
+        };
+    }
+    let [low, high] = around_rotors(site);
+    let diameter = site.models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
+    let spacing = diameter / POINTS_ACROSS;
+    let half_width = low.y.abs().max(high.y.abs()) + MARGIN * diameter;
+    let lowest = (low.z - MARGIN * diameter).max(0.5 * spacing);
+    let height = high.z + MARGIN * diameter - lowest;
+    let points = |length: f64| (length / spacing).ceil() as usize + 1;
+    Across { n_points: [points(2.0 * half_width), points(height)], spacing: [spacing; 2], lowest }
+}
+
 /// Grid of the turbulence that is made around all rotors.
-struct MadeGrid {
+struct Made {
     n_points: [usize; 3],
     /// Distance of neighbouring points (m).
     spacing: [f64; 3],
@@ -77,22 +138,15 @@ struct MadeGrid {
 }
 
 /// The grid of the turbulence that `site` has made around its rotors; none where it has none.
-fn made_grid(site: &Site) -> Option<MadeGrid> {
+fn made_grid(site: &Site) -> Option<Made> {
     let (case, wind) = (site.case, &site.case.wind);
     if case.wind_source() != WindSource::AroundRotors || wind.turbulence_intensity == 0.0 {
         return None;
     }
     let [low, high] = around_rotors(site);
-    let diameter = site.models.iter().map(|m| m.definition.rotor_diameter()).fold(0.0, f64::max);
-    let across = diameter / POINTS_ACROSS;
-    // The middle of the width stands at y = 0.
-    let half_width = low.y.abs().max(high.y.abs()) + MARGIN * diameter;
-    let lowest = (low.z - MARGIN * diameter).max(0.5 * across);
-    let height = high.z + MARGIN * diameter - lowest;
-    let points = |length: f64| (length / across).ceil() as usize + 1;
+    let Across { n_points: [n_y, n_z], spacing, lowest } = across(site);
     let interval = PLANE_INTERVAL.min(site.plan.diameter / PASSING_SPEED);
     let along = wind.speed * interval;
-    let [n_y, n_z] = [points(2.0 * half_width), points(height)];
     let length = (high.x - low.x) + 2.0 * reach_along(site) + reach_of_wakes(site);
     // Whole records only: 2, 3 and 5 are the only factors, which transforms like best.
     let whole = smooth((case.time.duration / interval + length / along).ceil() as usize);
@@ -101,7 +155,7 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
         TurbulenceModel::Mann => {
             // Cells of one shape along and across, and twice the width, whose periodic image would be felt
             // otherwise.
-            let stride = (across / along).floor().max(1.0) as usize;
+            let stride = (spacing[0].min(spacing[1]) / along).floor().max(1.0) as usize;
             let n_across = [smooth(2 * n_y), smooth(2 * n_z)];
             (along * stride as f64, smooth(whole.div_ceil(stride)), n_across)
         }
@@ -121,9 +175,9 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
         }
         n_planes = fewer;
     }
-    Some(MadeGrid {
+    Some(Made {
         n_points: [n_planes, n_across[0], n_across[1]],
-        spacing: [along, across, across],
+        spacing: [along, spacing[0], spacing[1]],
         lowest,
         memory: memory(n_planes),
         repeats_after: (n_planes < whole).then(|| n_planes as f64 * along / wind.speed),
@@ -133,11 +187,11 @@ fn made_grid(site: &Site) -> Option<MadeGrid> {
 /// The turbulence on `grid`; `progress` receives the share done, and a break ends it.
 fn made(
     site: &Site,
-    grid: &MadeGrid,
+    grid: &Made,
     progress: &dyn Fn(f64) -> ControlFlow<()>,
 ) -> Result<TurbulenceBox, InflowError> {
     let (case, wind) = (site.case, &site.case.wind);
-    let MadeGrid { n_points, spacing, lowest, .. } = *grid;
+    let Made { n_points, spacing, lowest, .. } = *grid;
     let standard_deviation = wind.turbulence_intensity * wind.speed;
     let (seed, threads) = (wind.seed, case.flow.threads);
     match wind.turbulence_model {

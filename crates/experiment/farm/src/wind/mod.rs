@@ -8,7 +8,7 @@ mod length_scale;
 mod surroundings;
 mod walls;
 
-pub use around_rotors::prescribed;
+pub use around_rotors::{prescribed, unsuited_grid};
 pub use at_inlet::entering;
 pub use from_file::{ForeignWind, Recorded, enters_from_file};
 pub use length_scale::{length_scale, usual_length_scale};

@@ -90,6 +90,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
             name: section.text("name"),
             model: section.text("model"),
             discon: section.optional_text("discon"),
+            torque_gain: torque_gain_of(section),
             position: position_of(section, &turbines),
             yaw: section.number("yaw_deg").to_radians(),
             pitch_misalignment: section
@@ -115,6 +116,18 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
         turbines.push(placement);
     }
     turbines
+}
+
+/// The gain of k ω² that `turbine` has of its own; notes where its controller's input file has one.
+fn torque_gain_of(turbine: &Section) -> Option<f64> {
+    let gain = turbine.optional_number("torque_gain")?;
+    if turbine.has("discon") {
+        let why = "the input file of the controller has the gain, VS_Rgn2K".to_owned();
+        let kind = ProblemKind::NoUse { key: turbine.key_path("torque_gain"), why };
+        let fix = "leave one of the two out".to_owned();
+        turbine.findings().note(turbine.span_of("torque_gain"), kind, Some(fix));
+    }
+    Some(gain)
 }
 
 /// The further sensors of a turbine, by their names.

@@ -4,6 +4,7 @@ mod campaign;
 mod cut;
 mod event;
 mod flow;
+mod grid;
 mod instruments;
 mod precursor;
 
@@ -11,6 +12,7 @@ pub(super) use campaign::CAMPAIGN;
 pub(super) use cut::CUT;
 pub(super) use event::{EVENTS, STEP};
 pub(super) use flow::{COMMON as FLOW_COMMON, flow};
+pub(super) use grid::GRID;
 pub(super) use instruments::{
     ACCELERATION, ANGLE, INSTRUMENT_KINDS, INSTRUMENTS, MOMENT, POWER, SPEED,
 };
@@ -80,6 +82,7 @@ pub(super) static WIND: Table = Table {
         key("kinematic_viscosity", above(0.0, 1e-3), "m²/s", Value("1.46e-5"), "Kinematic viscosity of air; the default is air at 15 °C at sea level.")
             .mistaken(&[Slip { unit: "mm²/s", factor: 1e-6 }]),
         key("turbulence_model", Holds::Choice(&["mann", "kaimal"]), "", Value("\"mann\""), "`mann`: Mann's spectral tensor. `kaimal`: Kaimal's spectra with the exponential coherence of IEC 61400-1, not with `flow.solver = \"lattice\"`, which needs wind that is free of divergence."),
+        key("grid", Holds::Table(&GRID), "", Otherwise("around all rotors, a tenth of a diameter farther, a 24th of a diameter apart"), "Where turbulence is made around the rotors: the points on which it is."),
         key("planes", Holds::Text, "", Otherwise("none"), "With `flow.solver = \"planes\"`, `\"vortex\"` or `\"lattice\"`: file with the planes of wind, `.bts` (TurbSim), `.wnd` (Bladed) or a HAWC2 box, relative to this file. In prescribed wind `speed` then only sets the Strouhal numbers and the rotor's first speed. The lattice takes the file's wind, its mean included, in at the inlet and makes no turbulence of its own: a plane reaches the place of the first turbine when it would in prescribed wind, and the air of the domain is filled with the planes before it. Below the lowest row of points the wind goes on to the ground in proportion to the profile of this case; `speed` sets the step, too."),
         key("precursor", Holds::Text, "", Otherwise("none"), "In place of `planes`, with `flow.solver = \"lattice\"`: folder that `wakemix inflow precursor` has left, relative to this file. Its planes come in at the inlet with their temperature, as those of `planes` do, and the air of the domain is its atmosphere: stratified, on a rotating earth, driven by the same pressure gradient, cooled or heated by the same ground, which `flow.ground` must name. Above the planes the mean wind and temperature are those of the precursor's box, which the domain must not rise above; beside them the mean blows, unless `beyond_planes` says otherwise. A cell takes 34 bytes more, and a third more time or less."),
         key("precursor_wind", Holds::Choice(&["planes", "beside"]), "", Value("\"planes\""), "Which wind of `precursor` comes in. `planes`: that of its record. `beside`: that of its box, which goes on from where the precursor stands, step by step beside each run: nothing ends, nothing comes round, no planes are in memory, and with `flow.sides = \"open\"` what comes in through the sides is the same air at the same time. It costs the precursor's steps and memory in each run. Its box ought to be longer and wider than the domain, which else meets the same eddies twice."),
@@ -149,6 +152,13 @@ pub(super) static TURBINE: Table = Table {
             "",
             Otherwise("the turbine's own controller"),
             "Input file of ROSCO (DISCON.IN, versions 2.6 to 2.10), relative to this file: the constants of the turbine's controller come from it instead of the turbine's file, with the table of coefficients that it names where that is there, and torque is controlled as it says.",
+        ),
+        key(
+            "torque_gain",
+            above(0.0, 1e14),
+            "N m s²",
+            Otherwise("that of the turbine's file"),
+            "Gain k of the torque k ω² below rated power, of rotor torque and rotor speed: that at the generator, N m/(rad/s)², times the cube of the gear ratio. Not with `discon`, whose file has one.",
         ),
         key(
             "position_diameters",

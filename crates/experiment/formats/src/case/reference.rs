@@ -1,7 +1,7 @@
 //! The table of keys as a page for people and as a schema for editors.
 
 use super::keys::{
-    ATMOSPHERE, BOX, CUT, EVENTS, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, PLANES, PRECURSOR,
+    ATMOSPHERE, BOX, CUT, EVENTS, GRID, INSTRUMENT_KINDS, INSTRUMENTS, OUTPUT, PLANES, PRECURSOR,
     PRECURSOR_TIME, ROOT, RUN, TIME, TURBINE, WIND, flow,
 };
 use basis::keys::{Holds, Key, LeftOut, Table};
@@ -26,7 +26,7 @@ const WHAT_SOLVERS_DO: &str = "The flow solver. Where induction is not resolved,
 pub fn reference() -> String {
     let mut page = PREFACE.to_owned();
     let events = EVENTS.iter().map(|(_, table)| *table);
-    let wind = [&ROOT, &WIND, &CUT].into_iter().chain(events);
+    let wind = [&ROOT, &WIND, &GRID, &CUT].into_iter().chain(events);
     let turbines = [&TIME, &TURBINE, &INSTRUMENTS].into_iter().chain(INSTRUMENT_KINDS);
     // Writing to a string cannot fail.
     for table in wind.chain([flow(Solver::default())]) {

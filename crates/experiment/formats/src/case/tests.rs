@@ -195,6 +195,18 @@ fn a_turbine_may_name_the_input_of_its_controller() {
     assert!(lines.contains("`turbine.T2.discon` must be text in quotes"), "{lines}");
 }
 
+#[test]
+fn a_turbine_may_have_a_torque_of_its_own() {
+    let case = small(&["turbine.T2.torque_gain=2.1e6"]).unwrap();
+    assert_eq!(case.turbines[0].torque_gain, None);
+    assert_eq!(case.turbines[1].torque_gain, Some(2.1e6));
+    assert_ne!(case.turbines[0].machine(), case.turbines[1].machine());
+    assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    let both = ["turbine.T2.torque_gain=2.1e6", "turbine.T2.discon=DISCON.IN"];
+    let lines = small(&both).unwrap_err().to_lines();
+    assert!(lines.contains("the input file of the controller has the gain"), "{lines}");
+}
+
 /// Whether the file at `path` is of a precursor, not of a study.
 fn is_precursor(path: &Path) -> bool {
     path.file_name().unwrap().to_string_lossy().starts_with("precursor-")

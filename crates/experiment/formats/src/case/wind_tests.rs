@@ -77,6 +77,26 @@ fn a_roughness_length_makes_the_profile_logarithmic() {
 }
 
 #[test]
+fn turbulence_may_have_points_of_its_own() {
+    let grid = "grid = { width = 300.0, height = 200.0, columns = 31, rows = 11 }";
+    let turbulent = |solver: &str| {
+        let text = text(grid).replace("intensity = 0.0", "intensity = 0.1");
+        parse("windy.toml", &text.replace("\"uniform\"", &format!("\"{solver}\"")), &[])
+    };
+    for solver in ["turbulence", "vortex"] {
+        let case = turbulent(solver).unwrap();
+        let grid = case.wind.grid.unwrap();
+        assert_eq!((grid.columns, grid.rows, grid.spacing()), (31, 11, [10.0, 20.0]));
+        assert_eq!(parse("again", &write(&case), &[]).unwrap(), case);
+    }
+    for solver in ["lattice", "uniform"] {
+        let lines = turbulent(solver).unwrap_err().to_lines();
+        let why = "`wind.grid` has no effect here: no turbulence is made around the rotors";
+        assert!(lines.contains(why), "{lines}");
+    }
+}
+
+#[test]
 fn a_rough_ground_asks_for_its_own_profile() {
     let message = |text: String, ground: &str| {
         let text = text.replace("solver = \"uniform\"", &format!("ground = {ground}"));

@@ -53,6 +53,9 @@ fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
     if let Some(discon) = &turbine.discon {
         writeln!(text, "discon = {}", quoted(discon))?;
     }
+    if let Some(gain) = turbine.torque_gain {
+        writeln!(text, "torque_gain = {gain:?}")?;
+    }
     let structure = if turbine.flexible { "flexible" } else { "rigid" };
     writeln!(text, "structure = \"{structure}\"")?;
     let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
