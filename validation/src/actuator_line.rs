@@ -109,6 +109,7 @@ fn compare(name: &str, cells_per_diameter: f64, wind_speed: f64, flat: bool) -> 
         air_density: 1.225,
         kinematic_viscosity: 1.5e-5,
         turbulence_model: TurbulenceModel::Mann,
+        grid: None,
         planes: None,
         precursor: None,
         precursor_beside: false,

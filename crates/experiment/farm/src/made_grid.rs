@@ -1,7 +1,9 @@
 //! The points on which a case has turbulence made around its rotors, where it says so itself.
 
+use serde::{Deserialize, Serialize};
+
 /// Points in a plane across the wind, in its middle the hub of the first turbine.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MadeGrid {
     /// From the first column to the last (m).
     pub width: f64,
