@@ -23,7 +23,6 @@ mod axisymmetric;
 pub mod blade_element;
 pub mod flow;
 mod folds;
-mod four_winds;
 pub mod free_vortex;
 pub mod gate;
 pub mod gaussian_process;

@@ -74,8 +74,8 @@ pub(super) const CHOICES: Validation = Validation {
 
 pub(super) const OPEN_LOOP: Validation = Validation {
     name: "free-vortex-open-loop",
-    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind of three seeds, beside a published study",
-    cost: Cost::Minutes(55),
+    about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
+    cost: Cost::Minutes(40),
     run: free_vortex::free_vortex_open_loop,
     pictures: None,
     page: "free-vortex",

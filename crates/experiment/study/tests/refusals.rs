@@ -89,7 +89,7 @@ fn what_does_not_fit_is_pointed_at_in_the_file() {
             "\"kaimal\"",
             "\"kaimal\"\ngrid = { width = 120.0, height = 170.0, columns = 13, rows = 18 }",
             7,
-            "and the rotors -63.0 to 63.0 m across and 27.0 to 153.0 m of height: give it a width of 126.0 m and a height of 126.0 m at least",
+            "and the rotors -62.9 to 62.9 m across and 27.1 to 152.9 m of height: give it a width of 125.9 m and a height of 125.9 m at least",
         ),
         (
             PRESCRIBED,
