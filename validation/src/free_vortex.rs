@@ -2,7 +2,6 @@
 //! a helix in it beside a published study.
 
 mod budget;
-mod choices;
 mod held;
 mod hub_vortex;
 mod open_loop;
@@ -54,11 +53,6 @@ pub fn free_vortex_helix() -> Vec<Row> {
 /// The hub vortex' circle at 1 D against the amplitude of helices at one Strouhal number.
 pub fn free_vortex_amplitude() -> Vec<Row> {
     hub_vortex::rows_at_one_strouhal()
-}
-
-/// Power of rotors whose wakes are resolved more coarsely and more finely than cases have it.
-pub fn free_vortex_choices() -> Vec<Row> {
-    choices::rows()
 }
 
 /// Power and blade loads of two turbines with a helix in even, sheared and turbulent wind.

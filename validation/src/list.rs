@@ -62,7 +62,6 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     vortices::VORTICES,
     vortices::ROTOR,
-    vortices::CHOICES,
     vortices::BUDGET,
     vortices::WAKE,
     vortices::HELIX,

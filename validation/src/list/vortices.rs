@@ -62,16 +62,6 @@ pub(super) const AMPLITUDE: Validation = Validation {
     recorded: include_str!("../../recorded/free-vortex-amplitude.toml"),
 };
 
-pub(super) const CHOICES: Validation = Validation {
-    name: "free-vortex-choices",
-    about: "what filaments, rings, near wake and steps of a free wake do to a rotor's power",
-    cost: Cost::Minutes(10),
-    run: free_vortex::free_vortex_choices,
-    pictures: None,
-    page: "free-vortex",
-    recorded: include_str!("../../recorded/free-vortex-choices.toml"),
-};
-
 pub(super) const OPEN_LOOP: Validation = Validation {
     name: "free-vortex-open-loop",
     about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
