@@ -88,7 +88,7 @@ pub struct ChannelResponse {
     pub name: String,
     /// Its gains (–, or control unit per output unit).
     pub gains: Vec<f64>,
-    /// Bounds that its weight asks for.
+    /// Bounds that its weight asks for (–, or control unit per output unit).
     pub bounds: Vec<f64>,
 }
 

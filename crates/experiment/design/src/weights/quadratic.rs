@@ -4,8 +4,8 @@ use super::{OneOrEach, WeightProblem};
 use faer::Mat;
 use serde::Deserialize;
 
-/// Weights of outputs and controls, and the noises on inputs and measurements, each for all channels or one by
-/// one.
+/// Weights of outputs and controls, and the noises on inputs and measurements, each for all channels or one
+/// by one.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Quadratic {
