@@ -329,12 +329,21 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "identification",
-        about: "subspace identification of simulated systems: poles, order, variance accounted for, delay",
+        about: "subspace identification of simulated systems: poles, order, variance accounted for, delay; poles beside another method's in numpy",
         cost: Cost::UnderAMinute,
         run: crate::identification::identification,
         pictures: None,
         page: "control-design",
         recorded: include_str!("../recorded/identification.toml"),
+    },
+    Validation {
+        name: "control-times",
+        about: "wall time of an identification, of a synthesis, and of an instant of the lidar loop",
+        cost: Cost::Minutes(1),
+        run: crate::control_times::control_times,
+        pictures: None,
+        page: "control-design",
+        recorded: include_str!("../recorded/control-times.toml"),
     },
     Validation {
         name: "lidar-loop",
