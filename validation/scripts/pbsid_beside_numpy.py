@@ -2,13 +2,18 @@
 `wakemix validate identification` to stand beside.
 
     python3 -m venv .venv && .venv/bin/pip install numpy==2.4.6
+    .venv/bin/python validation/scripts/pbsid_beside_numpy.py --simulated \\
+        > validation/data/identification/numpy_poles.json
     .venv/bin/python validation/scripts/pbsid_beside_numpy.py record.csv --inputs 2 --order 4 > poles.json
 
-The record is a table with one header line, a row for each sample: inputs first, then outputs, no time. wakemix finds
-states by a predictor's coefficients (PBSID-opt); here future outputs are projected at once on the past along future
-inputs, and left vectors are weighted by canonical correlation (N4SID with the weights of CVA: Van Overschee and De
-Moor, "Subspace identification for linear systems", 1996, chapter 4). Matrices A and C come from the shift of the
-extended observability matrix, B and D from least squares of the simulated output.
+The first makes the records of the validation anew, sample by sample, from the same generator of random numbers
+(validation/src/random.rs, identification.rs), and writes what is found in each. In the second the record is a
+table with one header line, a row for each sample: inputs first, then outputs, no time.
+
+wakemix finds states by a predictor's coefficients (PBSID-opt); here future outputs are projected at once on the
+past along future inputs, and left vectors are weighted by canonical correlation (N4SID with the weights of CVA:
+Van Overschee and De Moor, "Subspace identification for linear systems", 1996, chapter 4). Matrices A and C come
+from the shift of the extended observability matrix, B and D from least squares of the simulated output.
 
 The method takes inputs not to depend on noise: for a record of a closed loop `--closed-loop` projects by a long
 autoregression instead, written out row by row (a direct PBSID with explicit matrices and numpy's least squares).
@@ -16,6 +21,7 @@ autoregression instead, written out row by row (a direct PBSID with explicit mat
 
 import argparse
 import json
+import math
 import sys
 
 import numpy as np
@@ -128,16 +134,92 @@ def identified(u, y, args):
     return a, b, c, d, singular
 
 
+class Random:
+    """Knuth's congruential generator (MMIX), as validation/src/random.rs has it."""
+
+    def __init__(self, seed):
+        self.state = seed
+
+    def uniform(self):
+        self.state = (self.state * 6364136223846793005 + 1442695040888963407) % 2**64
+        return ((self.state >> 11) + 0.5) / 2**53
+
+    def normal_pair(self):
+        size = math.sqrt(-2.0 * math.log(self.uniform()))
+        turn = 2.0 * math.pi * self.uniform()
+        return size * math.cos(turn), size * math.sin(turn)
+
+
+def known_system(order):
+    """A, B and C of the validation's system of that order."""
+    a, b, c = np.zeros((order, order)), np.zeros((order, 2)), np.zeros((2, order))
+    for pair, (size, angle) in enumerate([(0.95, 0.25), (0.9, 0.7), (0.85, 1.3), (0.92, 2.0)][: order // 2]):
+        real, imaginary = size * math.cos(angle), size * math.sin(angle)
+        a[2 * pair : 2 * pair + 2, 2 * pair : 2 * pair + 2] = [[real, -imaginary], [imaginary, real]]
+    random = Random(20_261_124 + order)
+    # Entries are drawn column by column.
+    for column in range(2):
+        for row in range(order):
+            b[row, column] = random.uniform() + 0.5
+    for column in range(order):
+        for row in range(2):
+            sign = -1.0 if (row + column) % 3 == 0 else 1.0
+            c[row, column] = sign * (0.5 + 0.1 * column)
+    return a, b, c
+
+
+def simulated_record(order, share, seed, samples=6000):
+    """Inputs and outputs of the validation's record, noise included, means taken off."""
+    a, b, c = known_system(order)
+    random = Random(seed * 0x9E3779B97F4A7C15 % 2**64)
+    u = np.array([random.normal_pair() for _ in range(samples)]).T
+    y = simulated(a, b, c, np.zeros((2, 2)), u)
+    for output in y:
+        deviation, noise = math.sqrt(np.mean(output**2)), 0.0
+        for sample in range(samples):
+            noise = 0.8 * noise + 0.6 * random.normal_pair()[0]
+            output[sample] += share * deviation * noise
+    return [signal - signal.mean(axis=1, keepdims=True) for signal in (u, y)]
+
+
+def all_simulated(window=30):
+    """What is found in every record of the validation."""
+    records = []
+    for order in (2, 4, 6, 8):
+        for share in (0.1, 0.01):
+            u, y = simulated_record(order, share, 2 * order)
+            args = argparse.Namespace(order=order, window=window, closed_loop=False, feedthrough=False)
+            scales = y.std(axis=1, keepdims=True)
+            model = identified(u, y / scales, args)
+            poles = sorted(np.linalg.eigvals(model[0]), key=lambda pole: (abs(np.angle(pole)), pole.imag))
+            records.append(
+                {
+                    "order": order,
+                    "noise": share,
+                    "last": y[:, -1].tolist(),
+                    "poles": [[float(pole.real), float(pole.imag)] for pole in poles],
+                }
+            )
+    return {"numpy": np.__version__, "method": "N4SID with weights of CVA", "window": window, "records": records}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("record", help="table with one header line, inputs first")
-    parser.add_argument("--inputs", type=int, required=True, help="number of input columns")
+    parser.add_argument("record", nargs="?", help="table with one header line, inputs first")
+    parser.add_argument("--simulated", action="store_true", help="all records of the validation")
+    parser.add_argument("--inputs", type=int, help="number of input columns")
     parser.add_argument("--order", type=int, help="order of the model; otherwise the largest gap's")
     parser.add_argument("--window", type=int, default=20, help="samples of past and of future")
     parser.add_argument("--interval", type=float, default=1.0, help="s between samples")
     parser.add_argument("--feedthrough", action="store_true", help="inputs act within a sample")
     parser.add_argument("--closed-loop", action="store_true", help="inputs depend on noise")
     args = parser.parse_args()
+    if args.simulated:
+        json.dump(all_simulated(), sys.stdout, indent=1)
+        print()
+        return
+    if args.record is None or args.inputs is None:
+        parser.error("give a record and --inputs, or --simulated")
     table = np.loadtxt(args.record, delimiter=",", skiprows=1).T
     table = table - table.mean(axis=1, keepdims=True)
     deviations = table.std(axis=1, keepdims=True)

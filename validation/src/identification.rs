@@ -11,22 +11,43 @@ use identification::pbsid::{Regularisation, Settings, Subspace};
 use identification::{Channel, Record, Trend};
 use lti::Complex64;
 use lti::matrices::StateSpace;
+use serde::Deserialize;
 use std::f64::consts::TAU;
 
 const KNOWN: &str = "the system that was simulated";
+const NUMPY: &str = "N4SID with weights of CVA on the same record, in numpy 2.4.6";
+/// What `validation/scripts/pbsid_beside_numpy.py --simulated` found in the records of this validation.
+const BY_NUMPY: &str = include_str!("../data/identification/numpy_poles.json");
 /// Samples of a record (–).
 const N_SAMPLES: usize = 6000;
 const WINDOW: usize = 30;
 /// Samples by which the outputs come late (–).
 const DELAY: usize = 3;
 
+#[derive(Deserialize)]
+struct ByNumpy {
+    records: Vec<Found>,
+}
+
+/// What another program found in a record.
+#[derive(Deserialize)]
+struct Found {
+    order: usize,
+    noise: f64,
+    /// Outputs at the last sample, means taken off: its record is this one.
+    last: [f64; 2],
+    /// Real and imaginary parts.
+    poles: Vec<[f64; 2]>,
+}
+
 /// Systems of order two to eight, two inputs and two outputs: poles at 20 dB of coloured noise and at 40 dB,
-/// orders, variance accounted for on another record, a delay.
+/// orders, variance accounted for on another record, a delay; poles beside those of another subspace method.
 ///
 /// # Panics
-/// When a record cannot be identified from.
+/// When a record cannot be identified from, or is not that of the other program.
 pub fn identification() -> Vec<Row> {
-    let mut rows = Vec::new();
+    let ByNumpy { records } = serde_json::from_str(BY_NUMPY).expect("stored poles");
+    let mut rows: Vec<Row> = records.iter().map(beside_numpy).collect();
     for order in [2, 4, 6, 8] {
         let system = system(order);
         let fresh = record(&system, 0.01, 2 * order as u64 + 1);
@@ -36,7 +57,7 @@ pub fn identification() -> Vec<Row> {
             what: format!(
                 "order {order}, 20 dB of coloured noise: largest error of a pole over its size"
             ),
-            measured: pole_error(&system, &model),
+            measured: pole_error(&poles(order), &model),
             expected: 0.01,
             tolerance: AtMost,
             unit: "–",
@@ -66,6 +87,30 @@ pub fn identification() -> Vec<Row> {
     }
     rows.extend(delayed());
     rows
+}
+
+/// Poles beside those that numpy `found` in the same record: a tenth of the noise is to leave a tenth of the
+/// difference.
+fn beside_numpy(found: &Found) -> Row {
+    let Found { order, noise, last, poles } = found;
+    let record = record(&system(*order), *noise, 2 * *order as u64);
+    for (output, last) in record.outputs().iter().zip(last) {
+        let own = output.samples.last().copied().unwrap_or(f64::NAN);
+        assert!((own - last).abs() < 1e-9, "numpy's record of order {order} is another one");
+    }
+    let model = subspace(&record).model(*order).expect("a model").system;
+    let known: Vec<Complex64> = poles.iter().map(|[re, im]| Complex64::new(*re, *im)).collect();
+    Row {
+        what: format!(
+            "order {order}, {:.0} dB of coloured noise: largest distance of a pole from numpy's over its size",
+            -20.0 * noise.log10()
+        ),
+        measured: pole_error(&known, &model),
+        expected: 0.1 * noise,
+        tolerance: AtMost,
+        unit: "–",
+        source: NUMPY,
+    }
 }
 
 /// Poles of order `order`, all within the unit circle and apart from each other.
@@ -109,7 +154,7 @@ fn normal_pair(random: &mut Random) -> [f64; 2] {
 }
 
 /// A record of `system` under white inputs, its outputs with first-order noise of `share` (–) of their
-/// deviation, without means.
+/// deviation, without means; `pbsid_beside_numpy.py` makes the same.
 fn record(system: &StateSpace, share: f64, seed: u64) -> Record {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let mut recursion = system.recursion();
@@ -154,9 +199,9 @@ fn subspace(record: &Record) -> Subspace {
     Subspace::new(record, settings).expect("enough of a record")
 }
 
-/// Largest distance of a pole of `system` from the nearest of `model`, over its size (–).
-fn pole_error(system: &StateSpace, model: &StateSpace) -> f64 {
-    let [known, found] = [system, model].map(|system| system.poles().expect("finite matrices"));
+/// Largest distance of one of the poles `known` from the nearest of `model`, over its size (–).
+fn pole_error(known: &[Complex64], model: &StateSpace) -> f64 {
+    let found = model.poles().expect("finite matrices");
     worst(known.iter().map(|pole| {
         let distances = found.iter().map(|other| (other - pole).norm() / pole.norm());
         distances.fold(f64::INFINITY, f64::min)

@@ -21,6 +21,7 @@ pub mod aeroelastic;
 pub mod atmosphere;
 mod axisymmetric;
 pub mod blade_element;
+pub mod control_times;
 pub mod flow;
 mod folds;
 pub mod free_vortex;

@@ -7,9 +7,6 @@ use crate::studies::{Carried, failure, find, summaries};
 use basis::records::Summary;
 use design::{Identified, IdentifyQuestion, Source, SynthesizeQuestion, Synthesized, Trend};
 use design::{identify, synthesize};
-use faer::Mat;
-use identification::decoupling::relative_gains;
-use lti::matrices::StateSpace;
 use std::fs;
 use std::path::Path;
 
@@ -100,9 +97,10 @@ fn of_model(alone: &Identified, found: &Identified) -> Result<Vec<Row>, String> 
     };
     let [_, aside] = &found.accounted_for;
     let [rest, _] = found.relative_gains.as_ref().ok_or("there are no relative gains")?;
-    if let Some(offset) = found.azimuth_offset {
-        tell!("azimuth offset that decouples at rest: {:.1}°", offset.to_degrees());
-    }
+    // The source's commands go through such an offset.
+    let offset = found.azimuth_offset.as_ref().ok_or("there is no azimuth offset")?;
+    tell!("azimuth offset that decouples at rest: {:.1}°", offset.angle.to_degrees());
+    let [_, turned] = &offset.relative_gains;
     tell!("gain at rest (m/deg): {:.3?}", found.gain);
     let mut rows: Vec<Row> = ["tilt", "yaw"]
         .iter()
@@ -126,35 +124,13 @@ fn of_model(alone: &Identified, found: &Identified) -> Result<Vec<Row>, String> 
     rows.push(row("first relative gain at rest", rest[0][0], 0.9935, Within(0.1), "–", SOURCE));
     rows.push(row(
         "first relative gain at 0.02 rad/s, commands turned by the offset that decouples at rest",
-        turned(found)?,
+        turned[0][0],
         -1.278,
         Within(0.3),
         "–",
         SOURCE,
     ));
     Ok(rows)
-}
-
-/// First relative gain at the source's bandwidth (–), of the model whose commands go through the azimuth
-/// offset that decouples it at rest, as the source's do.
-fn turned(found: &Identified) -> Result<f64, String> {
-    let model = &found.model;
-    let offset = found.azimuth_offset.ok_or("there is no azimuth offset")?;
-    let (sine, cosine) = offset.sin_cos();
-    let turn = faer::mat![[cosine, sine], [-sine, cosine]];
-    let of = |rows: &[Vec<f64>]| {
-        let n_columns = rows.first().map_or(0, Vec::len);
-        Mat::from_fn(rows.len(), n_columns, |row, column| rows[row][column])
-    };
-    let system = StateSpace::new(
-        of(&model.a),
-        of(&model.b) * &turn,
-        of(&model.c),
-        of(&model.d) * &turn,
-        model.interval_s,
-    );
-    let gains = relative_gains(&system, BANDWIDTH).map_err(|error| error.to_string())?;
-    Ok(gains[(0, 0)].re)
 }
 
 fn of_loop(designed: &Synthesized) -> Result<Row, String> {

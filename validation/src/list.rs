@@ -331,13 +331,14 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     Validation {
         name: "identification",
-        about: "subspace identification of simulated systems: poles, order, variance accounted for, delay",
+        about: "subspace identification of simulated systems: poles, order, variance accounted for, delay; poles beside another method's in numpy",
         cost: Cost::UnderAMinute,
         run: crate::identification::identification,
         pictures: None,
         page: "control-design",
         recorded: include_str!("../recorded/identification.toml"),
     },
+    loops::TIMES,
     loops::LIDAR_LOOP,
     Validation {
         name: "synthesis",

@@ -4,6 +4,11 @@ use crate::IdentificationError;
 use faer::{Mat, c64};
 use lti::matrices::{MatrixError, StateSpace, relative_gain_array};
 
+/// Angles over half a turn that are looked at first (–).
+const N_ANGLES: usize = 180;
+/// How exactly an angle is found (rad).
+const ANGLE_TOLERANCE: f64 = 1e-9;
+
 /// Relative gain array of a system at a `frequency` (rad/s): inputs × outputs, rows and columns add to one.
 /// An identity says that each loop's gain is the same whether the others are closed or not.
 ///
@@ -31,11 +36,7 @@ pub fn relative_gains(
 /// # Errors
 /// [`IdentificationError::Sizes`] for other sizes, [`IdentificationError::Matrix`] for a singular gain.
 pub fn azimuth_offset(gain: &Mat<f64>) -> Result<f64, IdentificationError> {
-    for (what, found) in [("outputs", gain.nrows()), ("inputs", gain.ncols())] {
-        if found != 2 {
-            return Err(IdentificationError::Sizes { what, found, expected: 2 });
-        }
-    }
+    two_by_two(gain.nrows(), gain.ncols())?;
     let (g11, g12, g21, g22) = (gain[(0, 0)], gain[(0, 1)], gain[(1, 0)], gain[(1, 1)]);
     let determinant = g11 * g22 - g12 * g21;
     let (p, q) = (g11 * g22 + g12 * g21, g11 * g21 - g12 * g22);
@@ -55,6 +56,72 @@ pub fn azimuth_offset(gain: &Mat<f64>) -> Result<f64, IdentificationError> {
     Ok(sine.atan2(cosine))
 }
 
+/// Azimuth offset ψ (rad, above −π and up to π) with which the relative gains of a `system` of tilt and yaw
+/// at a `frequency` (rad/s) are as near to the identity as an offset can bring them.
+///
+/// Away from rest gains are complex and an offset is one number: the first relative gain λ of the turned
+/// system is as in [`azimuth_offset`] with complex P, Q and determinant, and |λ − 1|, by which all four
+/// entries are off, is least somewhere in half a turn. The other half makes the real part of g′₁₁ positive.
+///
+/// # Errors
+/// As [`azimuth_offset`], and for a pole at that frequency.
+pub fn nearest_azimuth_offset(
+    system: &StateSpace,
+    frequency: f64,
+) -> Result<f64, IdentificationError> {
+    two_by_two(system.outputs(), system.inputs())?;
+    let gain = system.response(frequency)?;
+    let (g11, g12, g21, g22) = (gain[(0, 0)], gain[(0, 1)], gain[(1, 0)], gain[(1, 1)]);
+    let determinant = g11 * g22 - g12 * g21;
+    let (p, q) = (g11 * g22 + g12 * g21, g11 * g21 - g12 * g22);
+    if determinant.is_nan() || determinant.norm() <= f64::EPSILON * (p.norm() + q.norm()) {
+        return Err(MatrixError::Singular("the gain at that frequency").into());
+    }
+    // 2 (λ − 1), squared: a sum of waves of periods π and π/2, two valleys at the most.
+    let off = |angle: f64| {
+        let (sine, cosine) = (2.0 * angle).sin_cos();
+        ((p * cosine + q * sine) / determinant - 1.0).norm_sqr()
+    };
+    let step = std::f64::consts::PI / N_ANGLES as f64;
+    let angles = (0..N_ANGLES).map(|index| index as f64 * step);
+    let lowest = angles.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0.0);
+    let (mut below, mut above) = (lowest - step, lowest + step);
+    while above - below > ANGLE_TOLERANCE {
+        let third = (above - below) / 3.0;
+        if off(below + third) < off(above - third) { above -= third } else { below += third }
+    }
+    let angle = 0.5 * (below + above);
+    let (sine, cosine) = angle.sin_cos();
+    let upright = (g11 * cosine - g12 * sine).re >= 0.0;
+    let half_turn = if upright { 0.0 } else { std::f64::consts::PI };
+    let (sine, cosine) = (angle + half_turn).sin_cos();
+    Ok(sine.atan2(cosine))
+}
+
+/// The `system` of tilt and yaw whose commands go through an azimuth `offset` (rad) on top of its own.
+///
+/// # Errors
+/// [`IdentificationError::Sizes`] for other than two inputs.
+pub fn with_azimuth_offset(
+    system: &StateSpace,
+    offset: f64,
+) -> Result<StateSpace, IdentificationError> {
+    two_by_two(2, system.inputs())?;
+    let mut turned = system.clone();
+    (turned.b, turned.d) = (rotated(&system.b, offset), rotated(&system.d, offset));
+    Ok(turned)
+}
+
+/// Whether there are two outputs and two inputs.
+fn two_by_two(outputs: usize, inputs: usize) -> Result<(), IdentificationError> {
+    for (what, found) in [("outputs", outputs), ("inputs", inputs)] {
+        if found != 2 {
+            return Err(IdentificationError::Sizes { what, found, expected: 2 });
+        }
+    }
+    Ok(())
+}
+
 /// The gain times \[cos ψ, sin ψ; −sin ψ, cos ψ\].
 fn rotated(gain: &Mat<f64>, angle: f64) -> Mat<f64> {
     let (sine, cosine) = angle.sin_cos();
@@ -65,6 +132,49 @@ fn rotated(gain: &Mat<f64>, angle: f64) -> Mat<f64> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// What an offset of `angle` (rad) leaves of the first relative gain's distance from one at `frequency`.
+    fn left(system: &StateSpace, angle: f64, frequency: f64) -> f64 {
+        let turned = with_azimuth_offset(system, angle).expect("two inputs");
+        let relative = relative_gains(&turned, frequency).expect("regular");
+        (relative[(0, 0)] - 1.0).norm()
+    }
+
+    #[test]
+    fn no_other_offset_comes_nearer_at_a_frequency() {
+        let system = crate::simulate::oscillators(4);
+        for frequency in [0.1, 0.2, 0.5, 1.0, 2.0] {
+            let found = nearest_azimuth_offset(&system, frequency).expect("regular");
+            let least = left(&system, found, frequency);
+            let others = (0..3600).map(|index| left(&system, f64::from(index) * 1e-3, frequency));
+            let others = others.fold(f64::INFINITY, f64::min);
+            assert!(least <= others + 1e-9, "{frequency} rad/s: {least} {others}");
+            let turned = with_azimuth_offset(&system, found).expect("two inputs");
+            assert!(turned.response(frequency).expect("no pole")[(0, 0)].re >= 0.0);
+        }
+    }
+
+    /// Of a system that is turned by −6° and otherwise acts on each axis alone 6° are the answer at rest and
+    /// at any frequency.
+    #[test]
+    fn a_system_that_is_turned_alone_is_turned_back_at_every_frequency() {
+        let lags = StateSpace::new(
+            faer::mat![[0.9, 0.0], [0.0, 0.7]],
+            faer::mat![[0.1, 0.0], [0.0, 0.4]],
+            Mat::identity(2, 2),
+            Mat::zeros(2, 2),
+            Some(1.0),
+        );
+        let turned = with_azimuth_offset(&lags, (-6.0_f64).to_radians()).expect("two inputs");
+        let gain = turned.gain_at_rest().expect("no pole");
+        let at_rest = azimuth_offset(&gain).expect("regular").to_degrees();
+        assert!((at_rest - 6.0).abs() < 1e-5, "{at_rest}");
+        for frequency in [0.05, 0.3] {
+            let there = nearest_azimuth_offset(&turned, frequency).expect("regular").to_degrees();
+            assert!((there - 6.0).abs() < 1e-5, "{there}");
+        }
+        assert!(nearest_azimuth_offset(&lags.selected(&[0], &[0]).expect("one"), 0.1).is_err());
+    }
 
     /// λ₁₁ = 1/(1 − g₁₂ g₂₁/(g₁₁ g₂₂)), at rest and at a frequency.
     #[test]

@@ -1,6 +1,6 @@
 //! Symmetric finite impulse responses, which shift no phase when their middle lies on the sample.
 
-use std::f64::consts::{PI, TAU};
+use lti::fir::{self, Window};
 
 /// Width of the Blackman window's transition, from pass to stop band, in units of 1/taps (cycles per sample).
 /// Source: Oppenheim and Schafer, "Discrete-time signal processing", table of windows.
@@ -12,25 +12,10 @@ pub(crate) fn taps_for(width: f64) -> usize {
     (TRANSITION / width).ceil() as usize | 1
 }
 
-/// A low-pass of gain one at frequency zero, half at `cut` (cycles per sample, below 0.5): a sinc under a
-/// Blackman window, 74 dB down in the stop band.
+/// A low-pass of gain one at frequency zero, half at `cut` (cycles per sample, below 0.5), 74 dB down in the
+/// stop band.
 pub(crate) fn low_pass(cut: f64, n_taps: usize) -> Vec<f64> {
-    let middle = (n_taps / 2) as f64;
-    let mut taps: Vec<f64> = (0..n_taps)
-        .map(|tap| {
-            let from_middle = tap as f64 - middle;
-            let sinc = if from_middle == 0.0 {
-                2.0 * cut
-            } else {
-                (TAU * cut * from_middle).sin() / (PI * from_middle)
-            };
-            let turn = PI * (tap as f64 + 1.0) / (middle + 1.0);
-            sinc * (0.42 - 0.5 * turn.cos() + 0.08 * (2.0 * turn).cos())
-        })
-        .collect();
-    let sum: f64 = taps.iter().sum();
-    taps.iter_mut().for_each(|tap| *tap /= sum);
-    taps
+    fir::low_pass(n_taps, cut, Window::Blackman)
 }
 
 /// The samples that a filter of an odd number of taps gives where all of its taps lie on `signal`: shorter by
@@ -56,13 +41,10 @@ pub(crate) fn zero_phase(signal: &[f64], taps: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn gain(taps: &[f64], frequency: f64) -> f64 {
-        let middle = (taps.len() / 2) as f64;
-        taps.iter()
-            .enumerate()
-            .map(|(i, tap)| tap * (TAU * frequency * (i as f64 - middle)).cos())
-            .sum()
+        fir::gain(taps, TAU * frequency)
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Why a model or a controller cannot be made.
 
+use crate::WeightProblem;
 use formats::FileError;
 use identification::IdentificationError;
 use lti::matrices::MatrixError;
@@ -49,6 +50,17 @@ pub enum DesignError {
         path: PathBuf,
         /// Why.
         source: SynthesisError,
+    },
+    /// A weight that cannot be one.
+    #[error("{}: {place} {problem}", path.display())]
+    #[diagnostic(help("{}", problem.fix()))]
+    Weight {
+        /// The file of weights.
+        path: PathBuf,
+        /// The table, with the channel that it is of.
+        place: String,
+        /// What is wrong with it.
+        problem: WeightProblem,
     },
     /// No surrogate of a table, or none that a file describes.
     #[error("no surrogate from {}: {source}", path.display())]

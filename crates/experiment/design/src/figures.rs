@@ -1,5 +1,6 @@
 //! Figures of a model and of a controller.
 
+use crate::model::short;
 use crate::{Identified, LoopResponses, Responses, Synthesized};
 use report::{
     Along, DensityFigure, DensityRow, Signals, SpectrumLine, TrackFigure, TrackLine, TrackRow,
@@ -18,6 +19,7 @@ pub(crate) fn of_identified(found: &Identified) -> Signals {
 /// The figures of what was synthesised.
 pub(crate) fn of_synthesized(found: &Synthesized) -> Signals {
     let mut tracks = vec![sensitivities(&found.responses)];
+    tracks.extend(by_channel(&found.responses));
     tracks.extend(step_responses(found));
     Signals { tracks, ..Signals::default() }
 }
@@ -61,11 +63,6 @@ fn frequency_response(found: &Identified) -> DensityFigure {
     }
 }
 
-/// The channel `name` without its turbine.
-fn short(name: &str) -> &str {
-    name.rsplit_once('.').map_or(name, |(_, channel)| channel)
-}
-
 /// Highest frequency (rad/s) at which some path of the record has an error below the model's largest gain:
 /// beyond, an excitation that is limited to a band leaves nothing but noise.
 fn last_told(response: &Responses) -> f64 {
@@ -99,25 +96,51 @@ fn singular_values(found: &Identified) -> TrackFigure {
     }
 }
 
-/// S, T and K S with the bounds of their weights.
-fn sensitivities(responses: &LoopResponses) -> TrackFigure {
-    let places: Vec<f64> = responses.frequencies.iter().map(|w| w.log10()).collect();
+/// What a controller shapes.
+const SHAPED: [&str; 3] = ["S", "T", "K S"];
+
+/// A row of `gains` with the `bounds` of its weight, if any, in dB over the frequencies.
+fn shaped(responses: &LoopResponses, label: String, gains: &[f64], bounds: &[f64]) -> TrackRow {
     let line = |name: &str, colour, gains: &[f64]| TrackLine {
         name: name.to_owned(),
         colour,
-        times: places.clone(),
+        times: responses.frequencies.iter().map(|w| w.log10()).collect(),
         values: gains.iter().map(|gain| 20.0 * gain.log10()).collect(),
         band: Vec::new(),
     };
-    let names = ["S (dB)", "T (dB)", "K S (dB)"];
-    let rows = names.into_iter().zip(&responses.gains).zip(&responses.bounds);
-    let rows = rows.map(|((label, gains), bounds)| {
-        let mut lines = vec![line("largest gain", 0, gains)];
-        if !bounds.is_empty() {
-            lines.push(line("1 / weight", 1, bounds));
-        }
-        TrackRow { label: label.to_owned(), is_angle: false, lines }
-    });
+    let mut lines = vec![line("largest gain", 0, gains)];
+    if !bounds.is_empty() {
+        lines.push(line("1 / weight", 1, bounds));
+    }
+    TrackRow { label, is_angle: false, lines }
+}
+
+/// The channels that have weights of their own; none where all have the same.
+fn by_channel(responses: &LoopResponses) -> Option<TrackFigure> {
+    let rows: Vec<TrackRow> = responses
+        .channels
+        .iter()
+        .map(|channel| {
+            let label = format!("{}, {} (dB)", SHAPED[channel.shaped], short(&channel.name));
+            shaped(responses, label, &channel.gains, &channel.bounds)
+        })
+        .collect();
+    (!rows.is_empty()).then(|| TrackFigure {
+        along: Along { label: "log₁₀ of frequency in rad/s", unit: "" },
+        name: "sensitivities-by-channel".to_owned(),
+        title: "Sensitivities, channel by channel".to_owned(),
+        caption: "Largest gain from all references to one channel of S, T and K S, the delay aside; the weight of the channel asks it to stay below γ times its line."
+            .to_owned(),
+        rows,
+        mark: None,
+    })
+}
+
+/// S, T and K S with the bounds of their weights.
+fn sensitivities(responses: &LoopResponses) -> TrackFigure {
+    let rows = SHAPED.into_iter().zip(&responses.gains).zip(&responses.bounds);
+    let rows = rows
+        .map(|((what, gains), bounds)| shaped(responses, format!("{what} (dB)"), gains, bounds));
     TrackFigure {
         along: Along { label: "log₁₀ of frequency in rad/s", unit: "" },
         name: "sensitivities".to_owned(),

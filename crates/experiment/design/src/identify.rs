@@ -5,7 +5,9 @@ use crate::model::{linear_model, rows};
 use crate::{DesignError, Source};
 use faer::Mat;
 use formats::linear_model::{LinearModel, Role};
-use identification::decoupling::{azimuth_offset, relative_gains};
+use identification::decoupling::{
+    azimuth_offset, nearest_azimuth_offset, relative_gains, with_azimuth_offset,
+};
 use identification::delay::{by_correlation, by_zeros};
 use identification::fit::{predicted, simulated, variance_accounted_for};
 use identification::frequency::FrequencyResponse;
@@ -57,11 +59,11 @@ pub struct Identified {
     pub accounted_for: [Vec<f64>; 2],
     /// Variance of each output that prediction one sample ahead accounts for (%), on what was kept aside.
     pub predicted: Vec<f64>,
-    /// Poles in continuous time (rad/s).
-    pub poles: Vec<Complex64>,
-    /// Transmission zeros in the right half plane, in continuous time (rad/s).
-    pub unstable_zeros: Vec<Complex64>,
-    /// Delay that these zeros stand for (s).
+    /// Poles.
+    pub poles: Roots,
+    /// Transmission zeros, all that are finite, of all inputs and outputs together.
+    pub zeros: Roots,
+    /// Delay that those in the right half plane stand for (s).
     pub delay_of_zeros: f64,
     /// Delay of each output (row) behind each input (column) by prewhitened correlation (s); none where
     /// nothing is significant, or the record too short.
@@ -70,11 +72,30 @@ pub struct Identified {
     pub gain: Vec<Vec<f64>>,
     /// Relative gains at rest and real parts at the bandwidth asked for; none of a system that is not square.
     pub relative_gains: Option<[Vec<Vec<f64>>; 2]>,
-    /// Azimuth offset (rad), on top of that of the record, with which tilt and yaw are decoupled at rest;
-    /// none but of two inputs and two outputs.
-    pub azimuth_offset: Option<f64>,
+    /// Azimuth offset with which tilt and yaw are decoupled at rest; none but of two inputs and two outputs.
+    pub azimuth_offset: Option<Offset>,
+    /// The one that comes nearest to decoupling them at the bandwidth asked for.
+    pub azimuth_offset_at_bandwidth: Option<Offset>,
     /// Frequency response of record and model.
     pub response: Responses,
+}
+
+/// Poles or zeros of a system in discrete time, the slowest first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Roots {
+    /// In the plane of z (–).
+    pub sampled: Vec<Complex64>,
+    /// ln z/T (rad/s), in the same order.
+    pub continuous: Vec<Complex64>,
+}
+
+/// An azimuth offset, and what it does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Offset {
+    /// On top of that of the record (rad).
+    pub angle: f64,
+    /// Relative gains with it at rest and real parts at the bandwidth asked for.
+    pub relative_gains: [Vec<Vec<f64>>; 2],
 }
 
 /// Frequency responses at the same frequencies.
@@ -124,19 +145,20 @@ fn found(question: &IdentifyQuestion, data: &Data) -> Result<Identified, Identif
         .map(|record| variance_accounted_for(record, &simulated(system, record)?));
     let [on_identified, on_aside] = accounted_for;
     let ahead = predicted(system, &found.gain, &aside)?;
-    let zeros = by_zeros(system).ok();
+    let rate = question.bandwidth;
     let gain = system.gain_at_rest()?;
     Ok(Identified {
         n_samples: [record.n_samples(), aside.n_samples()],
         singular_values: subspace.singular_values().iter().take(MOST_STATES).copied().collect(),
         accounted_for: [on_identified?, on_aside?],
         predicted: variance_accounted_for(&aside, &ahead)?,
-        poles: in_continuous_time(&system.poles()?, interval),
-        delay_of_zeros: zeros.as_ref().map_or(f64::NAN, |zeros| zeros.delay),
-        unstable_zeros: zeros.map_or_else(Vec::new, |zeros| zeros.zeros),
+        poles: Roots::of(system.poles()?, interval),
+        zeros: Roots::of(system.invariant_zeros()?, interval),
+        delay_of_zeros: by_zeros(system)?.delay,
         delays: delays(&record, shift)?,
-        relative_gains: relative(system, question.bandwidth),
-        azimuth_offset: azimuth_offset(&gain).ok(),
+        relative_gains: relative(system, rate),
+        azimuth_offset: offset(system, azimuth_offset(&gain), rate),
+        azimuth_offset_at_bandwidth: offset(system, nearest_azimuth_offset(system, rate), rate),
         gain: rows(&gain),
         response: responses(&record, system)?,
         model: in_a_file(data, &found, shift as f64 * interval, means),
@@ -163,9 +185,22 @@ fn in_a_file(
     model
 }
 
-/// Poles `discrete` of samples `interval` (s) apart, in continuous time (rad/s).
-fn in_continuous_time(discrete: &[Complex64], interval: f64) -> Vec<Complex64> {
-    discrete.iter().map(|pole| pole.ln() / interval).collect()
+impl Roots {
+    /// Of a system whose samples are `interval` (s) apart.
+    fn of(mut sampled: Vec<Complex64>, interval: f64) -> Self {
+        let rate = |root: &Complex64| root.ln() / interval;
+        sampled.sort_by(|a, b| {
+            let by_size = rate(a).norm().total_cmp(&rate(b).norm());
+            by_size.then(b.im.total_cmp(&a.im))
+        });
+        let continuous = sampled.iter().map(rate).collect();
+        Self { sampled, continuous }
+    }
+
+    /// Those outside the unit circle, which are those in the right half plane (rad/s).
+    pub fn unstable(&self) -> impl Iterator<Item = &Complex64> {
+        self.continuous.iter().filter(|root| root.re > 0.0)
+    }
 }
 
 /// Delays of all outputs behind all inputs (s), of a record whose outputs were moved by `shift` samples.
@@ -196,6 +231,17 @@ fn relative(system: &StateSpace, bandwidth: f64) -> Option<[Vec<Vec<f64>>; 2]> {
         Some(rows(&Mat::from_fn(gains.nrows(), gains.ncols(), |i, j| gains[(i, j)].re)))
     };
     Some([at(0.0)?, at(bandwidth)?])
+}
+
+/// The offset that was `found` (rad), where there is one, with the relative gains of the `system` under it.
+fn offset(
+    system: &StateSpace,
+    found: Result<f64, IdentificationError>,
+    bandwidth: f64,
+) -> Option<Offset> {
+    let angle = found.ok()?;
+    let turned = with_azimuth_offset(system, angle).ok()?;
+    Some(Offset { angle, relative_gains: relative(&turned, bandwidth)? })
 }
 
 /// Responses of `record`, in segments of an eighth of it, and of `system`.

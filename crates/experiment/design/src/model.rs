@@ -27,6 +27,11 @@ pub(crate) fn linear_model(
     LinearModel::new(role, description, *interval, ports, [a, b, c, d].map(rows))
 }
 
+/// The channel `name` without its turbine.
+pub(crate) fn short(name: &str) -> &str {
+    name.rsplit_once('.').map_or(name, |(_, channel)| channel)
+}
+
 /// A matrix row by row.
 pub(crate) fn rows(matrix: &Mat<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()

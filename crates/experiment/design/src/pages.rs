@@ -1,7 +1,7 @@
 //! Pages of a model and of a controller.
 
 use crate::figures::{of_identified, of_synthesized};
-use crate::{DesignError, Identified, Synthesized};
+use crate::{DesignError, Identified, Roots, Synthesized};
 use formats::linear_model::{LinearModel, Port};
 use lti::Complex64;
 use report::{AnswerRecords, AnswerTable};
@@ -29,17 +29,20 @@ pub fn report_identified(
             port.name
         )
     });
-    let unstable = found.poles.iter().any(|pole| pole.re > 0.0).then(|| {
+    let unstable = found.poles.unstable().next().map(|_| {
         "the model is not stable: no predictor of its delay can be made; another order, or samples further apart, may give one that is".to_owned()
     });
-    let mut tables = vec![of_outputs(found)];
-    if let Some([rest, there]) = &found.relative_gains {
-        tables.push(relative("Relative gains at rest.", rest, model));
-        tables.push(relative(
-            "Relative gains at the bandwidth asked for, real parts.",
-            there,
-            model,
-        ));
+    let mut tables = vec![of_outputs(found), roots(found)];
+    tables.extend(found.relative_gains.as_ref().map(|gains| relative("as recorded", gains, model)));
+    for (what, offset) in [
+        ("that decouples at rest", &found.azimuth_offset),
+        ("that comes nearest at the bandwidth", &found.azimuth_offset_at_bandwidth),
+    ] {
+        tables.extend(offset.as_ref().map(|offset| {
+            let angle = offset.angle.to_degrees();
+            let how = format!("with the azimuth offset {what}, {angle:.1}° on top of the record's");
+            relative(&how, &offset.relative_gains, model)
+        }));
     }
     let records = AnswerRecords {
         kind: "Identified model".to_owned(),
@@ -94,19 +97,21 @@ fn facts_of_model(found: &Identified) -> Vec<[String; 3]> {
     let [n_samples, n_aside] = found.n_samples;
     let interval = model.interval_s.unwrap_or(f64::NAN);
     let kept = format!("every {interval} s, the last {n_aside} kept aside");
-    let (zeros, as_delay) = match found.unstable_zeros.as_slice() {
-        [] => ("none".to_owned(), String::new()),
-        zeros => (list(zeros), format!("rad/s, as a delay of {:.1} s", found.delay_of_zeros)),
+    let unstable: Vec<Complex64> = found.zeros.unstable().copied().collect();
+    let as_delay = match unstable.as_slice() {
+        [] => String::new(),
+        _ => format!("rad/s, as a delay of {:.1} s", found.delay_of_zeros),
     };
     let mut facts = vec![
         fact("Samples", n_samples, kept),
         fact("Order", model.a.len(), "states"),
         fact("Delay", format!("{} s", model.output_delay_s), "as asked for, beside the matrices"),
-        fact("Poles", list(&found.poles), "rad/s"),
-        fact("Zeros in the right half plane", zeros, as_delay),
+        fact("Poles", list(&found.poles.continuous), "rad/s"),
+        fact("Transmission zeros", list(&found.zeros.continuous), "rad/s"),
+        fact("Of them in the right half plane", list(&unstable), as_delay),
     ];
-    if let Some(offset) = found.azimuth_offset {
-        let degrees = format!("{:.1}°", offset.to_degrees());
+    if let Some(offset) = &found.azimuth_offset {
+        let degrees = format!("{:.1}°", offset.angle.to_degrees());
         let remark = "that decouples at rest, on top of the record's";
         facts.push(fact("Azimuth offset", degrees, remark));
     }
@@ -149,8 +154,40 @@ fn complex(value: &Complex64) -> String {
 
 /// Complex numbers, one after the other; of pairs the upper one.
 fn list(values: &[Complex64]) -> String {
-    let one_of_each = values.iter().filter(|value| value.im >= 0.0);
-    one_of_each.map(|value| complex(value).replacen('+', "±", 1)).collect::<Vec<_>>().join(", ")
+    if values.is_empty() {
+        return "none".to_owned();
+    }
+    values.iter().filter(|value| value.im >= 0.0).map(pair).collect::<Vec<_>>().join(", ")
+}
+
+/// A complex number with its conjugate.
+fn pair(value: &Complex64) -> String {
+    complex(value).replacen('+', "±", 1)
+}
+
+/// Poles and zeros in both planes; of pairs the upper one.
+fn roots(found: &Identified) -> AnswerTable {
+    let of = |what: &'static str, roots: &Roots| {
+        let each = roots.sampled.iter().zip(&roots.continuous).filter(|(z, _)| z.im >= 0.0);
+        let row = |(z, s): (&Complex64, &Complex64)| {
+            let damping = -s.re / s.norm();
+            vec![
+                what.to_owned(),
+                pair(z),
+                pair(s),
+                format!("{:.4}", s.norm()),
+                if damping.is_finite() { format!("{damping:.3}") } else { "–".to_owned() },
+            ]
+        };
+        each.map(row).collect::<Vec<_>>()
+    };
+    let headings = ["", "in z (–)", "in s (rad/s)", "frequency (rad/s)", "damping (–)"];
+    AnswerTable {
+        caption: "Poles and transmission zeros, all that are finite, of all inputs and outputs together; s = ln z/T. A zero beside a pole is one that the record hardly tells."
+            .to_owned(),
+        headings: headings.map(str::to_owned).to_vec(),
+        rows: [of("pole", &found.poles), of("zero", &found.zeros)].concat(),
+    }
 }
 
 /// What the model says of each output.
@@ -176,15 +213,19 @@ fn of_outputs(found: &Identified) -> AnswerTable {
     }
 }
 
-fn relative(caption: &str, gains: &[Vec<f64>], model: &LinearModel) -> AnswerTable {
-    let rows = gains.iter().zip(&model.outputs).map(|(gains, port)| {
-        let numbers = gains.iter().map(|gain| format!("{gain:.4}"));
+/// Relative gains at rest, and real parts at the bandwidth, `how` the commands reach the blades.
+fn relative(how: &str, [rest, there]: &[Vec<Vec<f64>>; 2], model: &LinearModel) -> AnswerTable {
+    let rows = rest.iter().zip(there).zip(&model.outputs).map(|((rest, there), port)| {
+        let numbers = rest.iter().chain(there).map(|gain| format!("{gain:.4}"));
         std::iter::once(port.name.clone()).chain(numbers).collect()
     });
-    let inputs = model.inputs.iter().map(|port| port.name.clone());
+    let at = |place: &str| -> Vec<String> {
+        model.inputs.iter().map(|port| format!("{place}, {}", port.name)).collect()
+    };
+    let headings = [vec!["Output".to_owned()], at("at rest"), at("at the bandwidth")].concat();
     AnswerTable {
-        caption: caption.to_owned(),
-        headings: std::iter::once("Output".to_owned()).chain(inputs).collect(),
+        caption: format!("Relative gains {how}; at the bandwidth asked for real parts."),
+        headings,
         rows: rows.collect(),
     }
 }

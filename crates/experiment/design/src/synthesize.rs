@@ -2,9 +2,10 @@
 
 use crate::DesignError;
 use crate::model::{linear_model, rows, system};
-use crate::weights::{Method, Quadratic, Weight, WeightsFile};
+use crate::weights::{Diagonals, Method, Weight, Weights, WeightsFile, bound};
 use faer::Mat;
 use formats::linear_model::{LinearModel, Role};
+use lti::matrices::dense::blocks;
 use lti::matrices::{
     MatrixError, StateSpace, bilinear, discrete_riccati, inverse_bilinear, sample_delay, series,
 };
@@ -65,14 +66,30 @@ pub struct Synthesized {
 }
 
 /// Largest singular values over frequency.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LoopResponses {
     /// Frequencies (rad/s).
     pub frequencies: Vec<f64>,
     /// Of S, T and K S (–, –, control unit per output unit).
     pub gains: [Vec<f64>; 3],
-    /// Bounds that the weights of S, T and K S ask for; empty where there is no weight.
+    /// Bounds that the weights of S, T and K S ask for; empty where there is no weight, or one that leaves a
+    /// direction free.
     pub bounds: [Vec<f64>; 3],
+    /// Of each channel that has a weight of its own.
+    pub channels: Vec<ChannelResponse>,
+}
+
+/// Largest gain from all references to one channel, over frequency.
+#[derive(Clone, Debug)]
+pub struct ChannelResponse {
+    /// What is shaped: S (0), T (1) or K S (2).
+    pub shaped: usize,
+    /// The channel.
+    pub name: String,
+    /// Its gains (–, or control unit per output unit).
+    pub gains: Vec<f64>,
+    /// Bounds that its weight asks for (–, or control unit per output unit).
+    pub bounds: Vec<f64>,
 }
 
 /// Synthesises a controller.
@@ -81,8 +98,10 @@ pub struct LoopResponses {
 /// [`DesignError`] naming the file and what is wrong with it.
 pub fn synthesize(question: &SynthesizeQuestion) -> Result<Synthesized, DesignError> {
     let model = LinearModel::read(&question.model, Role::Model)?;
-    let weights = WeightsFile::read(&question.weights)?;
-    found(&model, &weights)
+    let file = WeightsFile::read(&question.weights)?;
+    let weights = file.on(&model, &question.weights)?;
+    let diagonals = file.quadratic_on(&model, &question.weights)?;
+    found(&model, &file, &weights, &diagonals)
         .map_err(|source| DesignError::Synthesis { path: question.model.clone(), source })
 }
 
@@ -95,11 +114,16 @@ struct Found {
     before_reduction: Option<f64>,
 }
 
-fn found(model: &LinearModel, weights: &WeightsFile) -> Result<Synthesized, SynthesisError> {
+fn found(
+    model: &LinearModel,
+    file: &WeightsFile,
+    weights: &Weights,
+    diagonals: &Diagonals,
+) -> Result<Synthesized, SynthesisError> {
     let plant = system(model);
-    let inner = match weights.method {
-        Method::HInfinity | Method::H2 => weighted(&plant, weights)?,
-        Method::Lqg | Method::Lqi => quadratic(&plant, weights)?,
+    let inner = match file.method {
+        Method::HInfinity | Method::H2 => weighted(&plant, file, weights)?,
+        Method::Lqg | Method::Lqi => quadratic(&plant, diagonals, file.method)?,
     };
     let delay = model.delay_samples();
     let controller = if delay > 0 {
@@ -112,7 +136,7 @@ fn found(model: &LinearModel, weights: &WeightsFile) -> Result<Synthesized, Synt
     let bandwidth = closed.bandwidth()?;
     let [s, t] = [closed.sensitivity()?, closed.complementary_sensitivity()?];
     Ok(Synthesized {
-        method: weights.method,
+        method: file.method,
         bound: inner.bound,
         achieved: inner.achieved,
         riccati_residuals: inner.residuals,
@@ -123,30 +147,30 @@ fn found(model: &LinearModel, weights: &WeightsFile) -> Result<Synthesized, Synt
         disc: closed.output_disc_margin()?,
         peaks: [s.h_infinity_norm()?.gain, t.h_infinity_norm()?.gain],
         bandwidth,
-        responses: responses(&closed, weights, bandwidth)?,
+        responses: responses(&closed, weights, model, bandwidth)?,
         steps: steps(&t, delay, bandwidth)?,
-        controller: in_a_file(model, weights, &plant, &inner.controller, &controller)?,
+        controller: in_a_file(model, file, &plant, &inner.controller, &controller)?,
     })
 }
 
 /// By weights over frequency, in continuous time; a model in discrete time goes there and back by the
 /// bilinear transformation.
-fn weighted(plant: &StateSpace, weights: &WeightsFile) -> Result<Found, SynthesisError> {
+fn weighted(
+    plant: &StateSpace,
+    file: &WeightsFile,
+    weights: &Weights,
+) -> Result<Found, SynthesisError> {
     let continuous = match plant.interval {
         Some(_) => inverse_bilinear(plant)?,
         None => plant.clone(),
     };
-    let [n_y, n_u] = [plant.outputs(), plant.inputs()];
-    let on = |weight: &Option<Weight>, n| weight.as_ref().map(|weight| weight.on(n)).transpose();
+    let whole = |weight: &Option<Weight>| weight.as_ref().map(|weight| weight.whole.clone());
+    let [performance, complementary, control] = weights.each_ref().map(whole);
     let problem = mixed_sensitivity(
         &continuous,
-        &SensitivityWeights {
-            performance: on(&weights.performance, n_y)?,
-            complementary: on(&weights.complementary, n_y)?,
-            control: on(&weights.control, n_u)?,
-        },
+        &SensitivityWeights { performance, complementary, control },
     )?;
-    let mut found = if weights.method == Method::H2 {
+    let mut found = if file.method == Method::H2 {
         let h2 = h2(&problem)?;
         Found {
             controller: h2.controller,
@@ -165,7 +189,7 @@ fn weighted(plant: &StateSpace, weights: &WeightsFile) -> Result<Found, Synthesi
             before_reduction: None,
         }
     };
-    if let Some(order) = weights.order.filter(|order| *order < found.controller.order()) {
+    if let Some(order) = file.order.filter(|order| *order < found.controller.order()) {
         let reduced = reduced_to_order(&problem, &found.controller, order)?;
         found.before_reduction = Some(reduced.norm_before);
         found.achieved = Some(reduced.norm_after);
@@ -178,30 +202,27 @@ fn weighted(plant: &StateSpace, weights: &WeightsFile) -> Result<Found, Synthesi
 }
 
 /// By quadratic weights.
-fn quadratic(plant: &StateSpace, weights: &WeightsFile) -> Result<Found, SynthesisError> {
-    let Quadratic { outputs, controls, integrals, input_noise, measurement_noise } =
-        weights.quadratic;
-    let [n, n_u, n_y] = [plant.order(), plant.inputs(), plant.outputs()];
-    let of_outputs = outputs * (plant.c.transpose() * &plant.c);
+fn quadratic(
+    plant: &StateSpace,
+    diagonals: &Diagonals,
+    method: Method,
+) -> Result<Found, SynthesisError> {
+    let of_outputs = plant.c.transpose() * &diagonals.outputs * &plant.c;
     let weights_of = |states| LqgWeights {
         states,
-        controls: controls * Mat::<f64>::identity(n_u, n_u),
-        process_noise: input_noise * (&plant.b * plant.b.transpose()),
-        measurement_noise: measurement_noise * Mat::<f64>::identity(n_y, n_y),
+        controls: diagonals.controls.clone(),
+        process_noise: &plant.b * &diagonals.input_noise * plant.b.transpose(),
+        measurement_noise: diagonals.measurement_noise.clone(),
     };
-    let (controller, norm) = if weights.method == Method::Lqg {
+    let (controller, norm) = if method == Method::Lqg {
         let best = lqg(plant, &weights_of(of_outputs))?;
         (best.controller, Some(best.norm))
     } else {
-        let states = Mat::from_fn(n + n_y, n + n_y, |row, column| {
-            if row < n && column < n {
-                of_outputs[(row, column)]
-            } else if row == column {
-                integrals
-            } else {
-                0.0
-            }
-        });
+        let aside = Mat::<f64>::zeros(plant.order(), plant.outputs());
+        let states = blocks(&[
+            &[&of_outputs, &aside],
+            &[&aside.transpose().to_owned(), &diagonals.integrals],
+        ]);
         (lqg_with_integral_action(plant, &weights_of(states))?, None)
     };
     Ok(Found { controller, bound: None, achieved: norm, residuals: None, before_reduction: None })
@@ -262,7 +283,8 @@ fn back_calculation(controller: &StateSpace) -> Result<Mat<f64>, MatrixError> {
 /// Sensitivities over three decades about the `bandwidth` (rad/s).
 fn responses(
     closed: &Loop,
-    weights: &WeightsFile,
+    weights: &Weights,
+    model: &LinearModel,
     bandwidth: Option<f64>,
 ) -> Result<LoopResponses, SynthesisError> {
     let middle = bandwidth.unwrap_or(0.1);
@@ -274,24 +296,35 @@ fn responses(
         .map(|index| middle * 10_f64.powf(decades(index)))
         .filter(|frequency| *frequency < fastest)
         .collect();
-    let largest = |system: &StateSpace| {
-        let values = frequencies.iter().map(|frequency| Ok(system.singular_values(*frequency)?[0]));
-        values.collect::<Result<Vec<f64>, SynthesisError>>()
-    };
-    let bounds = |weight: &Option<Weight>| -> Result<Vec<f64>, SynthesisError> {
-        let Some(weight) = weight else { return Ok(Vec::new()) };
-        frequencies.iter().map(|frequency| Ok(weight.gain(*frequency)?.recip())).collect()
-    };
-    let [s, t, ks] = &systems;
-    Ok(LoopResponses {
-        gains: [largest(s)?, largest(t)?, largest(ks)?],
-        bounds: [
-            bounds(&weights.performance)?,
-            bounds(&weights.complementary)?,
-            bounds(&weights.control)?,
-        ],
-        frequencies,
-    })
+    let mut found = LoopResponses { frequencies, ..LoopResponses::default() };
+    for (shaped, (system, weight)) in systems.iter().zip(weights).enumerate() {
+        found.gains[shaped] = largest(system, &found.frequencies)?;
+        let Some(weight) = weight else { continue };
+        found.bounds[shaped] = bounds(&weight.whole, &found.frequencies)?;
+        let ports = if shaped == 2 { &model.inputs } else { &model.outputs };
+        let all: Vec<usize> = (0..system.inputs()).collect();
+        for (channel, weight) in weight.by_channel.iter().enumerate() {
+            found.channels.push(ChannelResponse {
+                shaped,
+                name: ports[channel].name.clone(),
+                gains: largest(&system.selected(&[channel], &all)?, &found.frequencies)?,
+                bounds: bounds(weight, &found.frequencies)?,
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// Largest singular values (–) of a `system` at `frequencies` (rad/s).
+fn largest(system: &StateSpace, frequencies: &[f64]) -> Result<Vec<f64>, MatrixError> {
+    frequencies.iter().map(|frequency| Ok(system.singular_values(*frequency)?[0])).collect()
+}
+
+/// Bounds (–) that a `weight` asks for at `frequencies` (rad/s); empty where it leaves a direction free.
+fn bounds(weight: &StateSpace, frequencies: &[f64]) -> Result<Vec<f64>, MatrixError> {
+    let each = frequencies.iter().map(|frequency| bound(weight, *frequency));
+    let each = each.collect::<Result<Vec<Option<f64>>, MatrixError>>()?;
+    Ok(each.into_iter().collect::<Option<Vec<f64>>>().unwrap_or_default())
 }
 
 /// Step responses from every reference, with the delay; none in continuous time.

@@ -1,8 +1,8 @@
 //! From a record in a file to a controller in a file that holds the plant which made the record.
 
 use design::{
-    DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Trend, identify, report_identified,
-    report_synthesized, synthesize,
+    DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Synthesized, Trend, identify,
+    report_identified, report_synthesized, synthesize,
 };
 use formats::linear_model::{LinearModel, Role};
 use lti::Recursion;
@@ -49,11 +49,21 @@ fn excitation(state: &mut u64) -> f64 {
 
 /// A record of the plant about means that are not zero, with a little noise.
 fn record(folder: &Path, n_samples: usize) -> PathBuf {
+    let mut plant = Plant::new();
+    record_of(folder, n_samples, |input| plant.step(input))
+}
+
+/// A record of what `step` makes of tilt and yaw, likewise.
+fn record_of(
+    folder: &Path,
+    n_samples: usize,
+    mut step: impl FnMut([f64; 2]) -> [f64; 2],
+) -> PathBuf {
     let mut text = "Time (s),tilt (deg),yaw (deg),up (m),right (m)\n".to_owned();
-    let (mut plant, mut state, mut noise) = (Plant::new(), 11, 77);
+    let (mut state, mut noise) = (11, 77);
     for sample in 0..n_samples {
         let input = [excitation(&mut state), excitation(&mut state)];
-        let output = plant.step(input).map(|y| y + 0.02 * excitation(&mut noise));
+        let output = step(input).map(|y| y + 0.02 * excitation(&mut noise));
         let time = INTERVAL * sample as f64;
         writeln!(
             text,
@@ -135,6 +145,89 @@ fn the_controller_of_an_identified_model_holds_the_plant_that_was_recorded() {
     }
 }
 
+/// A system with known matrices, every second.
+fn system(matrices: [&[&[f64]]; 3]) -> Recursion {
+    let [a, b, c] = matrices.map(|rows| rows.iter().map(|row| row.to_vec()).collect::<Vec<_>>());
+    Recursion::new(&a, &b, &c, &[vec![0.0; 2], vec![0.0; 2]])
+}
+
+/// 0.5 (z − 1.25)/((z − 0.8)(z − 0.6)) and (z − 0.5)/((z − 0.9)(z − 0.3)), mixed at inputs and outputs: the
+/// zeros of both together are 1.25 and 0.5, though none of the four paths has a zero at either.
+#[test]
+fn zeros_of_inputs_and_outputs_together_are_found_in_a_record() {
+    let mut plant = system([
+        &[
+            &[1.4, -0.48, 0.0, 0.0],
+            &[1.0, 0.0, 0.0, 0.0],
+            &[0.0, 0.0, 1.2, -0.27],
+            &[0.0, 0.0, 1.0, 0.0],
+        ],
+        &[&[1.0, 0.5], &[0.0, 0.0], &[-0.4, 1.0], &[0.0, 0.0]],
+        &[&[0.5, -0.625, 0.6, -0.3], &[-0.2, 0.25, 1.0, -0.5]],
+    ]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = record_of(folder.path(), 6000, |input| {
+        let mut output = [0.0; 2];
+        plant.step(&input, &mut output);
+        output
+    });
+    let asked = IdentifyQuestion { order: Some(4), delay: 0.0, ..question(path) };
+    let found = identify(&asked).expect("a model");
+    let near = |roots: &[lti::Complex64], expected: f64, within: f64| {
+        roots.iter().any(|root| (root - expected).norm() < within)
+    };
+    let [zeros, poles] = [&found.zeros, &found.poles];
+    assert_eq!((zeros.sampled.len(), poles.sampled.len()), (2, 4));
+    assert!(near(&zeros.sampled, 1.25, 0.01) && near(&zeros.sampled, 0.5, 0.01), "{zeros:?}");
+    for pole in [0.9, 0.8, 0.6, 0.3] {
+        assert!(near(&poles.sampled, pole, 0.01), "{poles:?}");
+    }
+    // Slow ones first: ln 1.25 before ln 0.5, and ln 0.9 before all.
+    assert!((zeros.continuous[0].re - 1.25_f64.ln()).abs() < 0.01);
+    assert!((poles.continuous[0].re - 0.9_f64.ln()).abs() < 0.01);
+    let unstable: Vec<_> = zeros.unstable().collect();
+    assert!(unstable.len() == 1 && unstable[0].re > 0.0, "{unstable:?}");
+    // (z + 1)/(z − 1) seconds.
+    assert!((found.delay_of_zeros - 9.0).abs() < 0.5, "{}", found.delay_of_zeros);
+    let page = report_identified(&found, "record.csv", folder.path()).expect("a page");
+    let page = fs::read_to_string(page).expect("a page");
+    assert!(page.contains("Transmission zeros") && page.contains("in z (–)"));
+}
+
+/// Lags behind commands that are turned by −20°: their relative gains are cos² 20° at every frequency, and
+/// those with an offset of 20° the identity.
+#[test]
+fn relative_gains_are_told_with_the_azimuth_offset_and_without() {
+    let mut plant = system([
+        &[&[0.9, 0.0], &[0.0, 0.7]],
+        &[&[0.1, 0.0], &[0.0, 0.6]],
+        &[&[1.0, 0.0], &[0.0, 1.0]],
+    ]);
+    let (sine, cosine) = (-20.0_f64).to_radians().sin_cos();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = record_of(folder.path(), 6000, |[tilt, yaw]| {
+        let mut output = [0.0; 2];
+        plant.step(&[cosine * tilt + sine * yaw, cosine * yaw - sine * tilt], &mut output);
+        output
+    });
+    let asked = IdentifyQuestion { delay: 0.0, bandwidth: 0.2, ..question(path) };
+    let found = identify(&asked).expect("a model");
+    let without = found.relative_gains.as_ref().expect("two by two");
+    for gains in without {
+        assert!((gains[0][0] - cosine * cosine).abs() < 0.03, "{gains:?}");
+    }
+    for offset in [&found.azimuth_offset, &found.azimuth_offset_at_bandwidth] {
+        let offset = offset.as_ref().expect("two by two");
+        assert!((offset.angle.to_degrees() - 20.0).abs() < 1.5, "{}", offset.angle.to_degrees());
+        for gains in &offset.relative_gains {
+            assert!((gains[0][0] - 1.0).abs() < 0.01 && gains[0][1].abs() < 0.01, "{gains:?}");
+        }
+    }
+    let page = report_identified(&found, "record.csv", folder.path()).expect("a page");
+    let page = fs::read_to_string(page).expect("a page");
+    assert!(page.contains("with the azimuth offset that decouples at rest"));
+}
+
 #[test]
 fn what_cannot_be_used_is_told_with_its_file() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -156,5 +249,64 @@ fn what_cannot_be_used_is_told_with_its_file() {
     let integrating = "[performance]\nnumerator = [1.0, 1.0]\ndenominator = [1.0, 0.0]\n\n[control]\ncorner = 0.5\nratio = 10.0\nscale = 0.05\n";
     fs::write(&weights, integrating).expect("written");
     let said = synthesize(&asked).expect_err("a pole on the axis").to_string();
-    assert!(said.contains("performance weight") || said.contains("stabilisable"), "{said}");
+    assert!(
+        said.contains("weights.toml: [performance] has a pole on the imaginary axis"),
+        "{said}"
+    );
+}
+
+/// What a controller comes to, of the model of the record and `weights`.
+fn designed(folder: &Path, weights: &str) -> Synthesized {
+    let (model, path) = (folder.join("model.json"), folder.join("weights.toml"));
+    fs::write(&path, weights).expect("written");
+    synthesize(&SynthesizeQuestion { model, weights: path }).expect("a controller")
+}
+
+#[test]
+fn tilt_and_yaw_may_have_weights_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let found = identify(&question(record(folder.path(), 2400))).expect("a model");
+    found.model.write(&folder.path().join("model.json")).expect("written");
+    let control = "[control]\ncorner = 0.5\nratio = 10.0\nscale = 0.05\n";
+    let of = |channel: &str, bandwidth: f64| {
+        format!(
+            "[[performance]]\nchannel = \"{channel}\"\nbandwidth = {bandwidth}\npeak = 2.0\nattenuation = 0.001\n\n"
+        )
+    };
+    let alike = designed(
+        folder.path(),
+        &format!("[performance]\nbandwidth = 0.05\npeak = 2.0\nattenuation = 0.001\n\n{control}"),
+    );
+    assert!(alike.responses.channels.is_empty());
+    // The same number for both, one by one and as matrices: (s/2 + ω)/(s + a).
+    let each = designed(folder.path(), &(of("right", 0.05) + &of("up", 0.05) + control));
+    let matrices = "[performance]\nA = [[-5e-5]]\nB = [[1.0]]\nC = [[0.049975]]\nD = [[0.5]]\n\n";
+    let by_matrices = designed(folder.path(), &(matrices.to_owned() + control));
+    let expected = alike.bound.expect("a bound");
+    for other in [&each, &by_matrices] {
+        assert!((other.bound.expect("a bound") / expected - 1.0).abs() < 1e-4);
+    }
+    // A yaw that is asked to be five times as fast is faster than tilt, and both keep their bounds.
+    let apart = designed(folder.path(), &(of("right", 0.1) + &of("up", 0.02) + control));
+    let channels = &apart.responses.channels;
+    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+    assert_eq!(names, ["up", "right"]);
+    let achieved = apart.achieved.expect("a norm");
+    for channel in channels {
+        let kept = channel.gains.iter().zip(&channel.bounds);
+        // The bilinear transformation moves weights near the end of the band alone.
+        let slow = kept.zip(&apart.responses.frequencies).filter(|(_, rate)| **rate < 0.3);
+        for ((gain, bound), rate) in slow {
+            assert!(*gain <= 1.02 * achieved * bound, "{} at {rate} rad/s", channel.name);
+        }
+    }
+    let crossing = |channel: usize| {
+        let gains = &channels[channel].gains;
+        let index = gains.iter().position(|gain| *gain > std::f64::consts::FRAC_1_SQRT_2);
+        apart.responses.frequencies[index.expect("it crosses")]
+    };
+    assert!(crossing(1) > 2.0 * crossing(0), "{} {}", crossing(0), crossing(1));
+    let page = report_synthesized(&apart, "model.json", folder.path()).expect("a page");
+    let page = fs::read_to_string(page).expect("a page");
+    assert!(page.contains("Sensitivities, channel by channel"));
 }

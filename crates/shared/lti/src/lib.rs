@@ -6,12 +6,14 @@
 //! | lag without state of its own | [`lag::first`], [`lag::second`] | exact for an input that is held |
 //! | a low-pass of first order | [`LowPass`] | exact for an input held over the interval |
 //! | low-pass, high-pass, notch, second order | [`SecondOrder`] | bilinear, exact at its own frequency |
+//! | a low-pass without distortion of phase | [`fir::low_pass`] | sinc under a window |
 //! | poles | [`roots`] | |
 //! | several inputs and outputs | [`Recursion`] | as given |
 //!
 //! The interval is given with every sample, so that a filter works at any. Filters are plain data that
 //! serialise whole.
 
+pub mod fir;
 pub mod lag;
 mod low_pass;
 #[cfg(feature = "matrices")]

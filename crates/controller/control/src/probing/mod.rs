@@ -131,6 +131,34 @@ mod tests {
         }
     }
 
+    /// Pitch of an offset is that of commands that the matrix of `identification::decoupling` turns: the
+    /// offset that a model asks for is the one to add to `azimuth_offset_deg`.
+    #[test]
+    fn an_azimuth_offset_turns_the_commands_in_the_helix_frame() {
+        for sense in [Sense::CounterClockwise, Sense::Clockwise] {
+            let mut probing = probing(sense, 0.0);
+            let (sine, cosine) = probing.azimuth_offset.sin_cos();
+            let mut straight = Probing { azimuth_offset: 0.0, ..probing.clone() };
+            let [tilt, yaw] = straight.helix;
+            straight.helix = [cosine * tilt + sine * yaw, cosine * yaw - sine * tilt];
+            for step in 0..2000 {
+                let time = 0.1 * f64::from(step);
+                let measured = Measurements {
+                    time,
+                    azimuth: 1.3 * time,
+                    interval: 0.1,
+                    ..Measurements::at_rest(3)
+                };
+                let [mut with, mut without] = [0, 1].map(|_| PerBlade::splat(3, 0.0));
+                probing.add_to(&mut with, &measured);
+                straight.add_to(&mut without, &measured);
+                for (with, without) in with.iter().zip(without.iter()) {
+                    assert!((with - without).abs() < 1e-12, "{time} s");
+                }
+            }
+        }
+    }
+
     #[test]
     fn it_goes_on_from_what_it_saved_to_the_same_bits() {
         let commands = |probing: &mut Probing, steps: std::ops::Range<i32>| -> Vec<[f64; 2]> {

@@ -2,10 +2,10 @@
 
 use super::circle::Circle;
 use super::finder::{Finder, Found, Method, Search};
-use super::fir::LowPassFir;
 use crate::EstimationError;
 use basis::HelixFrame;
 use basis::scan::Scan;
+use lti::fir::{self, Window};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -83,6 +83,13 @@ impl HubVortexSettings {
             if !positive(value) {
                 return refuse(name, value, "take one above zero");
             }
+        }
+        if !(self.cut_off > 0.0 && self.cut_off * self.interval < 0.5) {
+            return refuse(
+                "cut-off of the low-pass filter (Hz)",
+                self.cut_off,
+                "take one above zero and below half the sampling rate",
+            );
         }
         match self.search.method {
             Method::FastRegion { threshold } if !(0.0..1.0).contains(&threshold) => {
@@ -169,7 +176,8 @@ pub struct HubVortexState {
 #[derive(Clone, Debug)]
 pub struct HubVortexFilter {
     settings: HubVortexSettings,
-    fir: LowPassFir,
+    /// Taps of the low-pass, that of the newest sample first (–).
+    taps: Vec<f64>,
     finder: Finder,
     /// Whole samples of the mean, and the share of one more (–).
     of_mean: (usize, f64),
@@ -183,7 +191,8 @@ impl HubVortexFilter {
     /// [`EstimationError::Setting`] naming the setting that cannot be.
     pub fn new(settings: HubVortexSettings, n_points: usize) -> Result<Self, EstimationError> {
         settings.check()?;
-        let fir = LowPassFir::new(settings.order, settings.cut_off, settings.interval)?;
+        let cut_off = settings.cut_off * settings.interval;
+        let taps = fir::low_pass(settings.order + 1, cut_off, Window::Hamming);
         let length = settings.n_periods as f64 * TAU / (settings.frame.rate * settings.interval);
         let of_mean = (length.floor() as usize, length.fract());
         let state = HubVortexState {
@@ -193,7 +202,7 @@ impl HubVortexFilter {
             last: HubVortex::NONE,
         };
         let finder = Finder::new(settings.search, n_points);
-        Ok(Self { settings, fir, finder, of_mean, state })
+        Ok(Self { settings, taps, finder, of_mean, state })
     }
 
     /// The hub vortex after `scan` at `time` (s), the time that turns the helix frame.
@@ -257,7 +266,7 @@ impl HubVortexFilter {
     fn filtered(&self, time: f64) -> HubVortex {
         let HubVortexState { samples, n_known, .. } = &self.state;
         let (mut place, mut taken, mut total, mut found) = ([0.0; 2], 0.0, 0.0, 0.0);
-        for (age, coefficient) in self.fir.coefficients().iter().enumerate().take(*n_known) {
+        for (age, coefficient) in self.taps.iter().enumerate().take(*n_known) {
             let sample = &samples[(n_known - 1 - age) % samples.len()];
             let weight = coefficient * sample.weight;
             place[0] += weight * sample.place[0];
@@ -312,7 +321,7 @@ impl HubVortexFilter {
         let HubVortexSettings { frame, compensates, .. } = &self.settings;
         let [left, up] = [now.filtered[0] - now.mean[0], now.filtered[1] - now.mean[1]];
         if *compensates {
-            let gain = self.fir.gain(frame.rate);
+            let gain = fir::gain(&self.taps, frame.rate * self.settings.interval);
             frame.of_fixed(time - now.delay, [up / gain, -left / gain])
         } else {
             frame.of_fixed(time, [up, -left])

@@ -17,7 +17,6 @@ mod background;
 mod circle;
 mod filter;
 mod finder;
-mod fir;
 mod jet;
 mod linear;
 mod point;

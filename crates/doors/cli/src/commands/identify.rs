@@ -3,7 +3,7 @@
 use super::arguments::{finite, positive};
 use super::output::{print_json, print_text, tell};
 use clap::Args;
-use design::{Identified, IdentifyQuestion, Source, Trend, identify, report_identified};
+use design::{Identified, IdentifyQuestion, Offset, Source, Trend, identify, report_identified};
 use miette::Result;
 use serde_json::json;
 use std::path::PathBuf;
@@ -159,32 +159,49 @@ fn text(found: &Identified, bandwidth: f64) -> String {
         table.row(row);
     }
     text += &table.fitted(super::output::columns());
-    let list =
-        |values: &[lti::Complex64]| values.iter().map(complex).collect::<Vec<_>>().join(", ");
-    text += &format!("poles (rad/s): {}\n", list(&found.poles));
-    if found.unstable_zeros.is_empty() {
-        text += "zeros in the right half plane: none\n";
-    } else {
-        text += &format!(
-            "zeros in the right half plane (rad/s): {}, as a delay of {:.1} s\n",
-            list(&found.unstable_zeros),
-            found.delay_of_zeros
-        );
+    text += &of_dynamics(found, bandwidth);
+    text + "VAF: variance that simulation accounts for, on what was identified from and kept aside; delay: first significant lag of the prewhitened correlation\n"
+}
+
+/// Poles, zeros, relative gains and azimuth offsets.
+fn of_dynamics(found: &Identified, bandwidth: f64) -> String {
+    let list = |values: &[lti::Complex64]| match values {
+        [] => "none".to_owned(),
+        _ => values.iter().map(complex).collect::<Vec<_>>().join(", "),
+    };
+    let mut text = format!(
+        "poles (rad/s): {}\ntransmission zeros (rad/s): {}\n",
+        list(&found.poles.continuous),
+        list(&found.zeros.continuous)
+    );
+    let unstable: Vec<lti::Complex64> = found.zeros.unstable().copied().collect();
+    text += &format!("zeros in the right half plane (rad/s): {}", list(&unstable));
+    if !unstable.is_empty() {
+        text += &format!(", as a delay of {:.1} s", found.delay_of_zeros);
     }
+    text += "\n";
+    let rows =
+        |gains: &[Vec<f64>]| gains.iter().map(|row| numbers(row)).collect::<Vec<_>>().join("; ");
     if let Some([rest, there]) = &found.relative_gains {
-        let rows = |gains: &[Vec<f64>]| {
-            gains.iter().map(|row| numbers(row)).collect::<Vec<_>>().join("; ")
-        };
         text += &format!("relative gains at rest: {}\n", rows(rest));
         text += &format!("relative gains at {bandwidth} rad/s: {}\n", rows(there));
     }
-    if let Some(offset) = found.azimuth_offset {
+    for (what, offset) in [
+        ("decouples at rest".to_owned(), &found.azimuth_offset),
+        (
+            format!("comes nearest to decoupling at {bandwidth} rad/s"),
+            &found.azimuth_offset_at_bandwidth,
+        ),
+    ] {
+        let Some(Offset { angle, relative_gains: [rest, there] }) = offset else { continue };
         text += &format!(
-            "azimuth offset that decouples at rest, on top of the record's: {:.1}°\n",
-            offset.to_degrees()
+            "azimuth offset that {what}, on top of the record's: {:.1}°; relative gains with it at rest: {}; at {bandwidth} rad/s: {}\n",
+            angle.to_degrees(),
+            rows(rest),
+            rows(there)
         );
     }
-    text + "VAF: variance that simulation accounts for, on what was identified from and kept aside; delay: first significant lag of the prewhitened correlation\n"
+    text
 }
 
 fn json(found: &Identified) -> serde_json::Value {
@@ -194,6 +211,14 @@ fn json(found: &Identified) -> serde_json::Value {
     let all = |responses: &[Vec<Vec<lti::Complex64>>]| -> Vec<Vec<Vec<[f64; 2]>>> {
         responses.iter().map(|rows| rows.iter().map(|row| pairs(row)).collect()).collect()
     };
+    let unstable: Vec<lti::Complex64> = found.zeros.unstable().copied().collect();
+    let offset = |Offset { angle, relative_gains: [rest, there] }: &Offset| {
+        json!({
+            "azimuth_offset_deg": angle.to_degrees(),
+            "relative_gains_at_rest": rest,
+            "relative_gains_at_bandwidth": there,
+        })
+    };
     json!({
         "model": found.model,
         "n_samples": found.n_samples[0],
@@ -202,14 +227,21 @@ fn json(found: &Identified) -> serde_json::Value {
         "variance_accounted_for_pc": found.accounted_for[0],
         "variance_accounted_for_kept_aside_pc": found.accounted_for[1],
         "variance_predicted_kept_aside_pc": found.predicted,
-        "poles_rad_s": pairs(&found.poles),
-        "right_half_plane_zeros_rad_s": pairs(&found.unstable_zeros),
+        "poles_rad_s": pairs(&found.poles.continuous),
+        "poles_z": pairs(&found.poles.sampled),
+        "transmission_zeros_rad_s": pairs(&found.zeros.continuous),
+        "transmission_zeros_z": pairs(&found.zeros.sampled),
+        "right_half_plane_zeros_rad_s": pairs(&unstable),
         "delay_of_zeros_s": found.delay_of_zeros,
         "delays_by_correlation_s": found.delays,
         "gain_at_rest": found.gain,
         "relative_gains_at_rest": found.relative_gains.as_ref().map(|gains| &gains[0]),
         "relative_gains_at_bandwidth": found.relative_gains.as_ref().map(|gains| &gains[1]),
-        "azimuth_offset_deg": found.azimuth_offset.map(f64::to_degrees),
+        "azimuth_offset_deg": found.azimuth_offset.as_ref().map(|found| found.angle.to_degrees()),
+        "azimuth_offsets": {
+            "at_rest": found.azimuth_offset.as_ref().map(offset),
+            "at_bandwidth": found.azimuth_offset_at_bandwidth.as_ref().map(offset),
+        },
         "response": {
             "frequencies_rad_s": found.response.frequencies,
             "record": all(&found.response.measured),

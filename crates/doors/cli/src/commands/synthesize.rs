@@ -115,6 +115,14 @@ fn json(found: &Synthesized) -> serde_json::Value {
             "crossover_rad_s": margins.crossover,
         })
     });
+    let channels = found.responses.channels.iter().map(|channel| {
+        json!({
+            "shaped": (["S", "T", "KS"][channel.shaped]),
+            "channel": channel.name,
+            "gains": channel.gains,
+            "bounds": channel.bounds,
+        })
+    });
     json!({
         "controller": found.controller,
         "method": found.method.to_string(),
@@ -135,6 +143,7 @@ fn json(found: &Synthesized) -> serde_json::Value {
         "frequencies_rad_s": found.responses.frequencies,
         "gains": found.responses.gains,
         "bounds": found.responses.bounds,
+        "by_channel": channels.collect::<Vec<_>>(),
         "steps": found.steps,
     })
 }

@@ -1,9 +1,8 @@
-//! Cost of one instant of the lidar loop on one core: `cargo bench -p wakemix-benches --bench lidar_loop`.
+//! An instant of the lidar loop on one core.
 //!
 //! NREL 5 MW, a lidar of 80 points a diameter downwind, all read at every instant from a wind in closed form;
 //! the hub vortex in its scan; a law of two errors with a predictor of 112 samples (240 states), at every
-//! instant. What a flow takes to tell its wind at 80 points is not in it. The best of short repeats counts. A
-//! number after `--` sets the repeats.
+//! instant. What a flow takes to tell its wind at 80 points is not in it. The best of short repeats counts.
 
 use basis::keys::{Value, Values};
 use basis::{Measurements, Vector3};
@@ -19,6 +18,7 @@ use turbine::{Definition, Induction, Turbine, TurbineSettings};
 
 const INTERVAL: f64 = 0.1;
 const N_INSTANTS: usize = 500;
+const N_REPEATS: usize = 20;
 /// Helix rate of Strouhal number 0.3 in 10 m/s on 126 m (rad/s).
 const RATE: f64 = 0.15;
 /// States of the law (–): a controller of order 8, a model of order 4 twice, and 112 samples of two outputs.
@@ -41,24 +41,14 @@ impl WindField for Wake {
     }
 }
 
-fn main() {
-    let n_repeats = std::env::args().skip(1).find_map(|a| a.parse().ok()).unwrap_or(40);
+/// Microseconds that an instant takes: lidar, and hub vortex with law and pitch.
+///
+/// # Panics
+/// When the library's own turbine cannot be had.
+pub(super) fn measured() -> [f64; 2] {
     let file = formats::library::load("nrel-5mw").expect("the library's own turbines are readable");
     let definition = Arc::new(file.definition);
-    let settings = TurbineSettings {
-        induction: Induction::ByFlow {
-            smearing_length: 8.0,
-            sample_spacing: 0.0,
-            dynamic_stall: false,
-        },
-        flexible: false,
-        air_density: 1.225,
-        yaw: 0.0,
-        rotor_speed: 1.0,
-        azimuth: 0.0,
-        pitch: 0.0,
-    };
-    let turbine = Turbine::new(definition.clone(), Vector3::ZERO, settings).expect("a turbine");
+    let turbine = turbine_of(&definition);
     let site = Site {
         constants: &file.controller,
         rotor: &definition,
@@ -73,27 +63,42 @@ fn main() {
     let mut sensing = sensing(&definition);
     let mut controller = controller(&site);
     let mut wake = Wake { time: 0.0, hub: Vector3::Z * definition.rotor.hub_height };
-    println!("microseconds an instant, best of {n_repeats}");
-    let reading = best_of(n_repeats, |time| {
+    let reading = best_of(|time| {
         wake.time = time;
         let truth = turbine.truth(time, INTERVAL);
         black_box(sensing.read(&Scene { truth: &truth, turbine: &turbine, wind: &wake }));
     });
-    println!("{:<26} {:>8.1}", "lidar", 1e6 * reading);
     let readings = sensing.readings().to_vec();
-    let deciding = best_of(n_repeats, |time| {
+    let deciding = best_of(|time| {
         let (interval, readings) = (INTERVAL, readings.as_slice());
         let measured = Measurements { time, interval, readings, ..Measurements::at_rest(3) };
         black_box(controller.update(black_box(&measured)));
     });
-    println!("{:<26} {:>8.1}", "vortex, law, pitch", 1e6 * deciding);
-    println!("{:<26} {:>8.1}", "both", 1e6 * (reading + deciding));
+    [1e6 * reading, 1e6 * deciding]
+}
+
+/// The turbine, stiff.
+fn turbine_of(definition: &Arc<Definition>) -> Turbine {
+    let settings = TurbineSettings {
+        induction: Induction::ByFlow {
+            smearing_length: 8.0,
+            sample_spacing: 0.0,
+            dynamic_stall: false,
+        },
+        flexible: false,
+        air_density: 1.225,
+        yaw: 0.0,
+        rotor_speed: 1.0,
+        azimuth: 0.0,
+        pitch: 0.0,
+    };
+    Turbine::new(definition.clone(), Vector3::ZERO, settings).expect("a turbine")
 }
 
 /// Seconds that `instant` takes, at times an interval apart; the least mean over a repeat.
-fn best_of(n_repeats: usize, mut instant: impl FnMut(f64)) -> f64 {
+fn best_of(mut instant: impl FnMut(f64)) -> f64 {
     let mut step = 0_u32;
-    (0..n_repeats)
+    (0..N_REPEATS)
         .map(|_| {
             let start = Instant::now();
             for _ in 0..N_INSTANTS {
