@@ -75,7 +75,7 @@ fn surrogates(folder: &Path) {
             4.0 + 6.0 * share(0.755),
             0.01 + 0.1 * share(0.569),
             -10.0 + 20.0 * share(0.414),
-            4.0 * share(0.303),
+            4.5 * share(0.303),
         ];
         let [power, load] = law(&x);
         x.iter().for_each(|x| write!(text, "{x},").expect("a string takes it"));
