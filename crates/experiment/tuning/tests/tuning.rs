@@ -140,8 +140,8 @@ fn a_tuning_finds_the_least_loss_and_goes_on_after_an_end_with_the_same_points()
     assert_eq!(longer.found.history.len(), 7);
 }
 
-/// The same turbines in steps a quarter longer tell before what helices cost; stopped in their runs and gone on
-/// with it ends the same.
+/// The same turbines in steps a quarter longer tell before what helices cost; stopped in their runs and
+/// gone on with it ends the same.
 #[test]
 fn a_cheaper_source_is_made_before_and_goes_on_after_an_end() {
     let cheaper = "[[cheaper]]\nname = \"coarse\"\nset = [\"flow.step=0.25\"]\nruns = 4\n";
