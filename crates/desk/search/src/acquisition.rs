@@ -102,12 +102,12 @@ fn knowledge(
     let bound = |place: usize| values[place].mean + NORMAL_97_5 * values[place].deviation;
     places.sort_by(|a, b| bound(*b).total_cmp(&bound(*a)).then(a.cmp(b)));
     places.truncate(N_LOOKED_AT);
-    let at: Vec<Vec<f64>> = places.iter().map(|p| sum.space().scaled(&candidates[*p])).collect();
+    let at: Vec<Vec<f64>> = places.iter().map(|p| sum.place(&candidates[*p])).collect();
     let means: Vec<f64> = places.iter().map(|place| values[*place].mean).collect();
     let best = values.iter().map(|value| value.mean).fold(f64::NEG_INFINITY, f64::max);
     let mut found: Option<Chosen> = None;
     for place in asked {
-        let moves = sum.moves(&sum.space().scaled(&candidates[*place]), &at)?;
+        let moves = sum.moves(&sum.place(&candidates[*place]), &at)?;
         let of_level = |level: usize| {
             let z = level_of(level);
             let highest = means.iter().zip(&moves).map(|(mean, move_by)| mean + z * move_by);

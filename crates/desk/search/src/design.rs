@@ -24,12 +24,7 @@ impl Design {
     ///
     /// # Errors
     /// [`SearchError::FewPoints`], [`SearchError::Outside`].
-    pub(crate) fn points(
-        &self,
-        space: &Space,
-        n: usize,
-        seed: u64,
-    ) -> Result<Vec<Vec<f64>>, SearchError> {
+    pub fn points(&self, space: &Space, n: usize, seed: u64) -> Result<Vec<Vec<f64>>, SearchError> {
         let points = match self {
             Self::Hypercube if n < FEWEST => {
                 return Err(SearchError::FewPoints { n, needed: FEWEST });

@@ -48,7 +48,7 @@ impl History {
     ///
     /// # Errors
     /// [`SearchError::Outputs`].
-    pub(crate) fn add(
+    pub fn add(
         &mut self,
         point: Vec<f64>,
         evaluation: Evaluation,
@@ -107,6 +107,24 @@ impl History {
             0.0
         };
         Observed { means, counts, noise, freedom, shared }
+    }
+}
+
+impl Observed {
+    /// This, and then `others` of cheaper sources: all blocks have the same noise, which each tells of,
+    /// and what evaluations share is that of the first.
+    pub(crate) fn followed_by(mut self, others: Vec<Self>) -> Self {
+        for other in others {
+            let freedom = self.freedom + other.freedom;
+            if freedom > 0 {
+                let squares = self.noise * self.freedom as f64 + other.noise * other.freedom as f64;
+                self.noise = squares / freedom as f64;
+            }
+            self.freedom = freedom;
+            self.means.extend(other.means);
+            self.counts.extend(other.counts);
+        }
+        self
     }
 }
 

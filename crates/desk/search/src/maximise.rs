@@ -28,6 +28,9 @@ pub struct Settings {
     pub may_repeat: bool,
     /// Seed of everything that is drawn.
     pub seed: u64,
+    /// What cheaper sources have told before, such as coarser simulations: each points with their
+    /// evaluations, of the same outputs.
+    pub cheaper: Vec<History>,
 }
 
 impl Settings {
@@ -45,6 +48,7 @@ impl Settings {
             share_blocks: false,
             may_repeat: true,
             seed: 1,
+            cheaper: Vec::new(),
         }
     }
 }
@@ -141,7 +145,7 @@ pub fn maximise<E: From<SearchError>>(
 fn learn(space: &Space, settings: &Settings, history: &History) -> Result<Known, SearchError> {
     let seed = settings.seed;
     let making = (settings.shape, settings.share_blocks, seed);
-    let sum = Sum::new(space, history, &settings.weights, making)?;
+    let sum = Sum::new(space, (history, &settings.cheaper), &settings.weights, making)?;
     let candidates = space.candidates(seed);
     let values = sum.at(&candidates)?;
     let optimum = Optimum::new(&sum, settings.weights.len(), &candidates, &values, seed)?;

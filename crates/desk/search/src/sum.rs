@@ -16,32 +16,52 @@ pub struct Sum {
     shared: f64,
     /// Blocks of an evaluation (–).
     n_blocks: f64,
+    /// Cheaper sources (–).
+    n_sources: usize,
 }
 
 impl Sum {
-    /// The processes of what `history` tells, of covariance function `shape`.
+    /// The processes of what `history` tells, of covariance function `shape`, and what `cheaper` sources tell
+    /// beside it.
+    ///
+    /// Each source has a dimension of its own, in which its points lie one away from all others: how alike
+    /// it is is a length like others, found from the data. Where it is another thing altogether its points
+    /// say nothing. Such a dimension for the fidelity is that of Kandasamy et al., "Multi-fidelity Bayesian
+    /// optimisation with continuous approximations", ICML 2017, with two places in it.
     ///
     /// # Errors
     /// [`SearchError::NoProcess`].
     pub fn new(
         space: &Space,
-        history: &History,
+        (history, cheaper): (&History, &[History]),
         weights: &[f64],
         (shape, share_blocks, seed): (Shape, bool, u64),
     ) -> Result<Self, SearchError> {
-        let points: Vec<Vec<f64>> =
-            history.points.iter().map(|point| space.scaled(point)).collect();
+        let n_sources = cheaper.len();
+        let at = |source: Option<usize>| {
+            move |point: &Vec<f64>| {
+                let mut scaled = space.scaled(point);
+                scaled.extend((0..n_sources).map(|own| f64::from(u8::from(source == Some(own)))));
+                scaled
+            }
+        };
+        let mut points: Vec<Vec<f64>> = history.points.iter().map(at(None)).collect();
+        for (source, cheap) in cheaper.iter().enumerate() {
+            points.extend(cheap.points.iter().map(at(Some(source))));
+        }
         let of_output = |output: usize| {
             let only: Vec<f64> =
                 (0..weights.len()).map(|o| f64::from(u8::from(o == output))).collect();
-            let observed = history.observed(&only, share_blocks);
-            Model::new(shape, &points, &observed, seed.wrapping_add(output as u64))
+            let others = cheaper.iter().map(|cheap| cheap.observed(&only, share_blocks));
+            let observed = history.observed(&only, share_blocks).followed_by(others.collect());
+            let all = (points.as_slice(), n_sources);
+            Model::new(shape, all, &observed, seed.wrapping_add(output as u64))
         };
         let models = (0..weights.len()).map(of_output).collect::<Result<_, _>>()?;
         let Observed { shared, counts, .. } = history.observed(weights, share_blocks);
         let n_blocks = counts.iter().sum::<f64>() / counts.len() as f64;
         let (weights, space) = (weights.to_vec(), space.clone());
-        Ok(Self { models, weights, space, shared: shared.sqrt(), n_blocks })
+        Ok(Self { models, weights, space, shared: shared.sqrt(), n_blocks, n_sources })
     }
 
     /// What is searched over.
@@ -61,7 +81,26 @@ impl Sum {
     }
 
     fn scaled(&self, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        points.iter().map(|point| self.space.scaled(point)).collect()
+        points.iter().map(|point| self.place(point)).collect()
+    }
+
+    /// Where the processes have `point`, of no cheaper source.
+    pub(crate) fn place(&self, point: &[f64]) -> Vec<f64> {
+        let mut scaled = self.space.scaled(point);
+        scaled.resize(scaled.len() + self.n_sources, 0.0);
+        scaled
+    }
+
+    /// How alike the curves of cheaper source number `source` are to those that are searched: their
+    /// correlation at one point, the mean over the parts of the sum (–).
+    ///
+    /// # Errors
+    /// [`SearchError::Surrogate`].
+    pub fn likeness(&self, source: usize) -> Result<f64, SearchError> {
+        let dimension = self.space.n_dimensions() + source;
+        let all = self.parts().map(|(model, _)| model.likeness(dimension));
+        let all = all.collect::<Result<Vec<f64>, SearchError>>()?;
+        Ok(all.iter().sum::<f64>() / all.len() as f64)
     }
 
     /// Output number `output` at `points`.
@@ -101,7 +140,7 @@ impl Sum {
     /// # Errors
     /// [`SearchError::Surrogate`].
     pub(crate) fn believing(&self, point: &[f64]) -> Result<Self, SearchError> {
-        let scaled = self.space.scaled(point);
+        let scaled = self.place(point);
         let models = self.models.iter().map(|model| model.believing(&scaled, self.n_blocks));
         Ok(Self { models: models.collect::<Result<_, _>>()?, ..self.clone() })
     }

@@ -154,6 +154,73 @@ fn what_blocks_share_is_taken_apart_from_their_noise() {
     assert_eq!(together.means, apart.means);
 }
 
+/// A coarse source whose gains are a fifth too small and whose summit lies aside, seen at twelve points.
+/// With it three evaluations of the curve itself find a place that lacks less than without, summed over
+/// six noises; the likeness of a source that is nothing but noise is found to be less than that of one
+/// like the curve.
+#[test]
+fn a_cheaper_source_tells_where_to_look() {
+    let space = Space::new(vec![Axis::new(0.05, 1.0), Axis::new(0.5, 6.0)]).expect("ranges");
+    let (_, greatest) = true_best(&space);
+    let coarse = |[strouhal, amplitude]: [f64; 2]| {
+        let [loss, gain] = array([0.9 * strouhal, amplitude]);
+        [loss, 0.8 * gain]
+    };
+    let points = Design::Hypercube.points(&space, 12, 77).expect("points");
+    let told =
+        |of: &dyn Fn([f64; 2]) -> [f64; 2], deviation: f64, normal: &mut dyn FnMut() -> f64| {
+            let mut history = History::default();
+            for point in &points {
+                let values = of([point[0], point[1]]);
+                let blocks = |value: f64, normal: &mut dyn FnMut() -> f64| -> Vec<f64> {
+                    (0..6).map(|_| value + deviation * normal()).collect()
+                };
+                let outputs = values.map(|value| blocks(value, normal)).to_vec();
+                history.add(point.clone(), Evaluation { outputs }, 2).expect("two outputs");
+            }
+            history
+        };
+    let (mut lacks, mut likeness) = ([0.0; 2], [0.0; 2]);
+    for repeat in 0..6 {
+        let mut normal = normals(300 + repeat);
+        let like = told(&coarse, 0.01, &mut normal);
+        let unlike = told(&|_| [0.0; 2], 0.05, &mut normal);
+        for (place, cheaper) in [vec![], vec![like.clone()]].into_iter().enumerate() {
+            let settings = Settings {
+                weights: vec![1.0; 2],
+                n_first: 2,
+                budget: 3,
+                seed: repeat,
+                cheaper,
+                ..Settings::of_one()
+            };
+            let found = maximise(&space, &settings, |proposal| {
+                each(proposal, |point| {
+                    let values = array([point[0], point[1]]);
+                    values.map(|value| blocks(value, 0.01, &mut normal)).to_vec()
+                })
+            })
+            .expect("a search");
+            let point = &found.optimum.point;
+            lacks[place] += greatest - array([point[0], point[1]]).iter().sum::<f64>();
+        }
+        let mut history = History::default();
+        for point in space.lattice(3) {
+            let values = array([point[0], point[1]]);
+            let outputs = values.map(|value| blocks(value, 0.01, &mut normal)).to_vec();
+            history.add(point, Evaluation { outputs }, 2).expect("two outputs");
+        }
+        let making = (Shape::Matern32, false, repeat);
+        let both = [like, unlike];
+        let sum = Sum::new(&space, (&history, &both), &[0.0, 1.0], making).expect("processes");
+        for (source, all) in likeness.iter_mut().enumerate() {
+            *all += sum.likeness(source).expect("a source") / 6.0;
+        }
+    }
+    assert!(lacks[1] < 0.6 * lacks[0], "{lacks:?}");
+    assert!(likeness[0] > likeness[1] + 0.1, "{likeness:?}");
+}
+
 /// What is expected above a bound, by a sum over a fine grid of the density: to the square of its step.
 #[test]
 fn the_expected_excess_is_its_integral() {

@@ -76,6 +76,19 @@ impl Shape {
         }
     }
 
+    /// Correlation of the values at `a` and `b`, of `lengths` (–).
+    ///
+    /// # Errors
+    /// [`SurrogateError::Lengths`] where they do not have one number of dimensions,
+    /// [`SurrogateError::NotPositive`] for a length.
+    pub fn correlation(self, lengths: &[f64], a: &[f64], b: &[f64]) -> Result<f64, SurrogateError> {
+        let (signal_variance, lengths) = (1.0, lengths.to_vec());
+        let parameters = Hyperparameters { signal_variance, lengths, noise_variance: 0.0 };
+        parameters.check(a.len())?;
+        parameters.check(b.len())?;
+        Ok(self.covariance(&parameters, a, b))
+    }
+
     /// Covariance of the values at `a` and `b` (unit of the values, squared).
     pub(crate) fn covariance(self, parameters: &Hyperparameters, a: &[f64], b: &[f64]) -> f64 {
         parameters.signal_variance * self.of_square(self.total(parameters, a, b)).0

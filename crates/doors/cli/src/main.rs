@@ -116,6 +116,8 @@ enum Command {
 fn main() -> ExitCode {
     let began = Instant::now();
     wakemix::study::outputs::announce();
+    #[cfg(feature = "parquet")]
+    campaign::announce_parquet();
     let arguments = match arguments() {
         Ok(arguments) => arguments,
         Err(error) => return output::usage(&error),

@@ -1,5 +1,7 @@
 //! Results of all tasks that are done, a row each: factors, seeds, numbers.
 
+mod mean;
+
 use crate::column::{Column, Values};
 use crate::error::CampaignError;
 use crate::numbers::{is_like, numbers};
@@ -18,7 +20,7 @@ const TOLD: usize = 6;
 /// What was collected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Collected {
-    /// Tasks, a row each (–).
+    /// Rows: one a task, or one for all tasks that a mean is of (–).
     pub n_rows: usize,
     /// Columns (–).
     pub n_columns: usize,
@@ -26,14 +28,23 @@ pub struct Collected {
     pub n_missing: i64,
 }
 
-/// Writes the results of the campaign in `folder` into `path`, which ends with `.csv` or `.parquet`.
+/// Writes the results of the campaign in `folder` into `path`, which ends with `.csv` or `.parquet`:
+/// tasks that differ in the factors `mean_over` alone as one row of means.
 ///
 /// # Errors
 /// [`CampaignError`].
-pub fn collect(folder: &Path, path: &Path) -> Result<Collected, CampaignError> {
+pub fn collect(
+    folder: &Path,
+    path: &Path,
+    mean_over: &[String],
+) -> Result<Collected, CampaignError> {
     let table = Table::open(folder)?;
-    let (columns, n_rows) = columns(&table, folder)?;
+    let (mut columns, mut n_rows) = columns(&table, folder)?;
     let n_missing = table.counts()?.all() - n_rows as i64;
+    if !mean_over.is_empty() {
+        let factors = table.meta()?.columns;
+        (columns, n_rows) = mean::mean_over(columns, n_rows, &factors, mean_over)?;
+    }
     let bytes = match path.extension().and_then(|end| end.to_str()) {
         Some("csv") => csv(&columns, n_rows).into_bytes(),
         Some("parquet") => parquet(&columns, path)?,

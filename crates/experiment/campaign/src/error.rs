@@ -154,6 +154,15 @@ pub enum CampaignError {
         /// Some that there are.
         known: String,
     },
+    /// No factor is called so.
+    #[error("the campaign varies no `{key}`, over which means are asked for")]
+    #[diagnostic(help("it varies {known}"))]
+    NoFactor {
+        /// What was asked for.
+        key: String,
+        /// What is varied.
+        known: String,
+    },
     /// No task is done yet.
     #[error("{} has no task that is done", folder.display())]
     #[diagnostic(help("make some with `wakemix campaign run`"))]

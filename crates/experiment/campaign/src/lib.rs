@@ -40,5 +40,11 @@ pub use run::{Ended, Observer, Progress, RunOptions, Silent, run};
 pub use status::{Failure, Status, status};
 pub use table::Counts;
 
+/// Has tables in Parquet read wherever tables of samples are, such as by surrogates: `collect` writes them.
+#[cfg(feature = "parquet")]
+pub fn announce_parquet() {
+    formats::table::announce_parquet(&parquet::PARQUET);
+}
+
 #[cfg(test)]
 mod tests;

@@ -51,6 +51,11 @@ impl Gathered {
         if let Some(rotor) = &turbine.rotor {
             self.add(format!("{own}.yaw_deg"), "deg", rotor.yaw_deg);
         }
+        for sector in &turbine.sectors {
+            let name = format!("{own}.sector_{}", sector.name);
+            self.add(format!("{name}.wind_speed"), "m/s", sector.wind_speed);
+            self.add(format!("{name}.turbulence_intensity"), "–", sector.turbulence_intensity);
+        }
         for load in &turbine.loads {
             self.load(own, load);
         }

@@ -1,5 +1,9 @@
 //! Results as Parquet: one row group, a column each, units as the file's metadata `units` (JSON).
 
+mod read;
+
+pub(crate) use read::PARQUET;
+
 use crate::column::{Column, Values};
 use ::parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use ::parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};

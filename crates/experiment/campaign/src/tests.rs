@@ -163,7 +163,7 @@ fn tasks_are_made_once_and_collected_as_their_runs_are() {
         assert_eq!(collected.map(f64::to_bits), number.value.map(f64::to_bits), "{}", number.name);
     }
     let csv = folder.path().join("results.csv");
-    let collected = collect(&out, &csv).unwrap();
+    let collected = collect(&out, &csv, &[]).unwrap();
     assert_eq!((collected.n_rows, collected.n_missing), (6, 0));
     let text = fs::read_to_string(&csv).unwrap();
     let mut lines = text.lines();
@@ -171,7 +171,7 @@ fn tasks_are_made_once_and_collected_as_their_runs_are() {
     assert!(head.starts_with("task,wind.speed,control.T1.amplitude_deg,wall_time [s],"), "{head}");
     assert!(head.contains(",T1.power.mean [W],"), "{head}");
     assert!(lines.next().unwrap().starts_with("1,8.0,1.0,"), "{text}");
-    let other = collect(&out, &folder.path().join("results.xls")).unwrap_err();
+    let other = collect(&out, &folder.path().join("results.xls"), &[]).unwrap_err();
     assert!(said(&other).contains("results.xls ends neither"), "{other}");
 }
 
@@ -319,6 +319,48 @@ fn parquet_holds_what_was_collected() {
     ];
     assert_eq!(rows[0], first);
     assert_eq!(rows[1][1..], [(name(1), Field::Null), (name(2), Field::Double(0.1 + 0.2))]);
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn surrogates_read_the_parquet_that_is_collected() {
+    use formats::table::Samples;
+    announce_parquet();
+    // More rows than are read at a time.
+    let n = 20_000;
+    let number = |row: usize| 0.1 * row as f64;
+    let column = |name: &str, unit: &str, values| column::Column {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        values,
+    };
+    let columns = |broken: Option<usize>| {
+        let loads = (0..n).map(|row| (Some(row) != broken).then(|| number(row)));
+        [
+            column("task", "", Values::Whole((0..n).map(|row| Some(row as i64)).collect())),
+            column("strategy", "", Values::Text(vec![Some("greedy".to_owned()); n])),
+            column("T1.RootMyb1.del_m10", "kN m", Values::Number(loads.collect())),
+        ]
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("results.parquet");
+    let read = |broken, names: &[&str]| {
+        fs::write(&path, crate::parquet::bytes(&columns(broken)).unwrap()).unwrap();
+        Samples::read(&path, names)
+    };
+    let found = read(None, &["T1.RootMyb1.del_m10", "task"]).unwrap();
+    assert_eq!((found.lines.len(), found.columns[0].unit.as_str()), (n, "kN m"));
+    assert!((0..n).all(|row| found.row(row) == [number(row), row as f64]));
+    for (broken, name, words) in [
+        (Some(17_000), "T1.RootMyb1.del_m10", "row 17001: T1.RootMyb1.del_m10 is NaN"),
+        (None, "strategy", "column strategy holds no plain numbers"),
+        (None, "T1.RootMyb2.del_m10", "no column \"T1.RootMyb2.del_m10\""),
+    ] {
+        let error = read(broken, &[name]).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    fs::write(&path, "no Parquet").unwrap();
+    assert!(Samples::read(&path, &["task"]).is_err());
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! | a model of what answers an excitation | [`identify`] | `wakemix identify` |
 //! | a controller for a model | [`synthesize`] | `wakemix synthesize` |
 //! | a surrogate of what a table holds | [`regression::train`] | `wakemix surrogate` |
+//! | what surrogates say of a layout | [`layout::predict_layout`] | `wakemix surrogate layout` |
 //!
 //! Files in, numbers and a file out; the arithmetic is that of the rooms `identification`, `synthesis` and
 //! `surrogate`.
@@ -14,6 +15,7 @@ mod data;
 mod error;
 mod figures;
 mod identify;
+pub mod layout;
 mod model;
 mod pages;
 pub mod regression;

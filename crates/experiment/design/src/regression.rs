@@ -8,7 +8,9 @@ mod stored;
 mod train;
 mod validate;
 
-pub use cuts::{Cut, cuts, draw_surrogate};
+pub(crate) use stored::regression;
+
+pub use cuts::{Cut, Scatter, cuts, draw_surrogate, fit_in_words};
 pub use kernel_text::KernelText;
 pub use predict::{PredictQuestion, Predicted, predict};
 pub use train::{TrainQuestion, Trained, train};

@@ -2,8 +2,8 @@
 
 use design::SurrogateModel;
 use design::regression::{
-    KernelText, PredictQuestion, TrainQuestion, ValidateQuestion, cuts, draw_surrogate, predict,
-    train, validate,
+    KernelText, PredictQuestion, Scatter, TrainQuestion, ValidateQuestion, cuts, draw_surrogate,
+    fit_in_words, predict, train, validate,
 };
 use std::fmt::Write as _;
 use std::fs;
@@ -82,8 +82,12 @@ fn a_table_becomes_a_surrogate_that_its_file_holds() {
     let held = validate(&asked).expect("validated");
     assert!(held.on_table.is_some_and(|found| found.covered_95.is_some()));
     assert_eq!((held.n_rows, held.pairs.len()), (120, 60));
-    let pairs = Some(&held.pairs[..]);
-    let names = draw_surrogate(&held.model, &at("model.json"), pairs, Some([0, 1]), folder.path());
+    assert_eq!(found.test_pairs.len(), 18);
+    let fit = fit_in_words(&[("trained on", found.on_training), ("kept aside", found.on_test)]);
+    assert!(fit.starts_with("RMSPE ") && fit.ends_with("of 18 inputs kept aside"), "{fit}");
+    let scatter = Some(Scatter { pairs: &held.pairs, fit });
+    let two = Some([0, 1]);
+    let names = draw_surrogate(&held.model, &at("model.json"), scatter, two, folder.path());
     assert_eq!(names.expect("drawn"), ["surrogate-scatter", "surrogate-cuts", "surrogate-map"]);
     assert!(at("figures/surrogate-map.svg").exists());
     assert_eq!(cuts(&held.model, &at("model.json")).expect("cuts").len(), 2);

@@ -132,6 +132,18 @@ pub const CASES: &[ShippedCase] = &[
         after: Some("wake-inflow"),
     },
     ShippedCase {
+        name: "wake-slices",
+        file: include_str!("../../../../cases/wake-slices.toml"),
+        minutes: 4.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "in-slices",
+        file: include_str!("../../../../cases/in-slices.toml"),
+        minutes: 0.1,
+        after: Some("wake-slices"),
+    },
+    ShippedCase {
         name: "helix-offshore",
         file: include_str!("../../../../cases/helix-offshore.toml"),
         minutes: 12.0,

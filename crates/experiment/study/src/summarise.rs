@@ -1,5 +1,6 @@
 //! From the series of a run to its summary.
 
+mod sectors;
 mod warnings;
 
 use crate::StudyError;
@@ -144,6 +145,7 @@ impl<'a> Turbine<'a> {
             thrust,
             rotor_speed,
             pitch,
+            sectors: sectors::of(setup, index)?,
             delivered_pitch,
             power_gain: None,
             pitch_response: control.kind().pitch_response(control),

@@ -82,6 +82,17 @@ pub enum TuningError {
         /// The one that it compares with.
         baseline: String,
     },
+    /// A cheaper source with other turbines.
+    #[error("the cheaper source {name} has the turbines {there}, and what is tuned has {here}")]
+    #[diagnostic(help("give it the same turbines, by the same names in the same order"))]
+    OtherSource {
+        /// The source.
+        name: String,
+        /// Its turbines.
+        there: String,
+        /// Those of the case that is tuned.
+        here: String,
+    },
     /// Numbers of a run that cannot be worked out.
     #[error("{} cannot be compared with its baseline: {source}", path.display())]
     Analysis {

@@ -49,6 +49,23 @@ pub struct TuningFile {
     pub seed: u64,
     /// Channels whose equivalent loads are followed, each with its Wöhler exponent (–).
     pub loads: Vec<(String, f64)>,
+    /// Overrides of the case in every run.
+    pub set: Vec<String>,
+    /// Sources of cheaper data.
+    pub cheaper: Vec<Cheaper>,
+}
+
+/// A case that costs less and is like the one that is tuned: coarser, or of another solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cheaper {
+    /// What it is called; its runs are in the folder of this name.
+    pub name: String,
+    /// Case file, or name of a shipped case, with the same two runs.
+    pub case: PathBuf,
+    /// Overrides of it.
+    pub set: Vec<String>,
+    /// Runs, its baseline aside (–).
+    pub n_runs: usize,
 }
 
 /// What is varied.
@@ -85,6 +102,18 @@ struct Raw {
     #[serde(default)]
     design: Option<Spanned<RawDesign>>,
     loads: Option<Spanned<RawLoads>>,
+    #[serde(default)]
+    cheaper: Vec<Spanned<RawCheaper>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCheaper {
+    name: String,
+    case: Option<String>,
+    #[serde(default)]
+    set: Vec<String>,
+    runs: Spanned<usize>,
 }
 
 fn one() -> u64 {
@@ -189,6 +218,25 @@ impl TuningFile {
             share_blocks: true,
             may_repeat: false,
             seed: self.seed,
+            cheaper: Vec::new(),
+        }
+    }
+
+    /// The tuning of cheaper source number `index` as though it were one of its own, without a search.
+    pub(crate) fn of_cheaper(&self, index: usize) -> Self {
+        let Cheaper { case, set, n_runs, .. } = self.cheaper[index].clone();
+        // Another seed, so that its points are others than those of the first design.
+        let seed = self.seed.wrapping_add(1 + index as u64);
+        let (design, n_first) = (Design::Hypercube, n_runs);
+        Self {
+            case,
+            set,
+            budget: n_runs,
+            design,
+            n_first,
+            seed,
+            cheaper: Vec::new(),
+            ..self.clone()
         }
     }
 
@@ -202,7 +250,8 @@ impl TuningFile {
     /// Overrides of the case that make `point`.
     pub fn overrides(&self, point: &[f64]) -> Vec<String> {
         let of = |(variable, value): (&Variable, &f64)| variable.overrides(&self.run, *value);
-        self.variables.iter().zip(point).flat_map(of).collect()
+        let set = self.set.iter().cloned();
+        set.chain(self.variables.iter().zip(point).flat_map(of)).collect()
     }
 
     /// `point` in words: "St = 0.25, amplitude = 4°".

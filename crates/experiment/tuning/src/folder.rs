@@ -97,6 +97,11 @@ impl Folder {
     }
 }
 
+/// Whether a tuning was begun in `directory`.
+pub(crate) fn is_begun(directory: &Path) -> bool {
+    points_path(directory).is_file()
+}
+
 /// What was proposed in the tuning in `directory`; nothing where none was begun.
 pub(crate) fn n_points(directory: &Path) -> usize {
     let found = read(&points_path(directory)).ok();

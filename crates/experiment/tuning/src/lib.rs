@@ -20,7 +20,7 @@ mod tuned;
 mod watch;
 
 pub use error::TuningError;
-pub use file::{TuningFile, Variable};
+pub use file::{Cheaper, TuningFile, Variable};
 pub use loads::Compromise;
 pub use search::Normal;
 pub use tune::tune;

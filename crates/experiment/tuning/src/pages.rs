@@ -118,6 +118,12 @@ fn facts(tuned: &Tuned) -> Vec<[String; 3]> {
         };
         facts.push(fact("One more run", format!("{:.3} %", 100.0 * gain), remark));
     }
+    for (source, likeness) in tuned.file.cheaper.iter().zip(tuned.likenesses()) {
+        let likeness = likeness.map_or("–".to_owned(), |likeness| format!("{likeness:.2}"));
+        let remark =
+            format!("made before, {} runs; correlation of their curves with these", source.n_runs);
+        facts.push(fact(&format!("Cheaper source {}", source.name), likeness, remark));
+    }
     facts.push(fact(
         "Runs",
         found.history.len(),

@@ -2,20 +2,34 @@
 
 use crate::{Tuned, TuningError};
 use formats::atomic;
-use search::Normal;
+use search::{History, Normal};
 use serde_json::{Value, json};
 
 /// What the files hold, in words.
 const WHAT: &str = "what a tuning found";
 
-/// Writes `tuning.json` and `data.csv` of `tuned`, whose `outputs` have these names, into its folder.
+/// Writes `tuning.json` and `data.csv` of `tuned`, whose `outputs` have these names, into its folder, and
+/// what `cheaper` sources gave into theirs.
 ///
 /// # Errors
 /// [`TuningError::File`].
-pub(crate) fn write(tuned: &Tuned, outputs: &[String]) -> Result<(), TuningError> {
+pub(crate) fn write(
+    tuned: &Tuned,
+    cheaper: &[History],
+    outputs: &[String],
+) -> Result<(), TuningError> {
+    for (source, history) in tuned.file.cheaper.iter().zip(cheaper) {
+        let path = tuned.directory.join(&source.name).join("data.csv");
+        atomic::write(&path, WHAT, csv(tuned, history, outputs).as_bytes())?;
+    }
+    let history = &tuned.found.history;
     let text = serde_json::to_string_pretty(&tuned.to_json()).expect("plain numbers and texts");
     atomic::write(&tuned.directory.join("tuning.json"), WHAT, (text + "\n").as_bytes())?;
-    atomic::write(&tuned.directory.join("data.csv"), WHAT, csv(tuned, outputs).as_bytes())?;
+    atomic::write(
+        &tuned.directory.join("data.csv"),
+        WHAT,
+        csv(tuned, history, outputs).as_bytes(),
+    )?;
     Ok(())
 }
 
@@ -28,6 +42,21 @@ fn normal(normal: &Normal) -> Value {
 }
 
 impl Tuned {
+    /// How alike each cheaper source is found to be: the correlation of its curves with those that are
+    /// searched (–); none where it cannot be told.
+    pub(crate) fn likenesses(&self) -> Vec<Option<f64>> {
+        let sources = 0..self.file.cheaper.len();
+        sources.map(|source| self.found.sum.likeness(source).ok()).collect()
+    }
+
+    fn cheaper_to_json(&self) -> Value {
+        let both = self.file.cheaper.iter().zip(self.likenesses());
+        both.map(|(source, likeness)| {
+            json!({ "name": source.name, "runs": source.n_runs, "correlation": likeness })
+        })
+        .collect()
+    }
+
     /// All of it, as `tuning.json` has it; gains over the baseline's array power (–).
     pub fn to_json(&self) -> Value {
         let found = &self.found;
@@ -80,6 +109,7 @@ impl Tuned {
             "baseline": self.file.baseline,
             "optimum": optimum(&found.optimum),
             "optimum_places": places.collect::<Vec<_>>(),
+            "cheaper": self.cheaper_to_json(),
             "shared_deviation": found.sum.shared_deviation(),
             "expected_gain_of_one_more": found.expected_gain,
             "ended_settled": found.is_settled,
@@ -89,8 +119,9 @@ impl Tuned {
     }
 }
 
-/// A line for every block of every run: its number, the variables, the block, then the outputs (–).
-fn csv(tuned: &Tuned, outputs: &[String]) -> String {
+/// A line for every block of every run in `history`: its number, the variables, the block, then the
+/// outputs (–).
+fn csv(tuned: &Tuned, history: &History, outputs: &[String]) -> String {
     let variables = tuned.file.variables.iter().map(|variable| variable.key.clone());
     let head: Vec<String> = std::iter::once("point".to_owned())
         .chain(variables)
@@ -98,7 +129,6 @@ fn csv(tuned: &Tuned, outputs: &[String]) -> String {
         .chain(outputs.iter().cloned())
         .collect();
     let mut text = head.join(",") + "\n";
-    let history = &tuned.found.history;
     for (index, (point, evaluation)) in history.points.iter().zip(&history.evaluations).enumerate()
     {
         let n_blocks = evaluation.outputs.iter().map(Vec::len).min().unwrap_or(0);

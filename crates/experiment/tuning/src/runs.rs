@@ -16,6 +16,7 @@ const NO_GAINS: &str = "has no gains: the run";
 pub(crate) type Watcher<'a> = Mutex<&'a mut (dyn Watch + Send)>;
 
 /// What makes runs.
+#[derive(Clone, Copy)]
 pub(crate) struct Runs<'a> {
     pub(crate) file: &'a TuningFile,
     pub(crate) stop: &'a AtomicBool,
@@ -59,7 +60,8 @@ impl Runs<'_> {
         if !self.file.is_of_run_alone() {
             return Ok(true);
         }
-        self.make(&folder.baseline(), vec![self.file.baseline.clone()], Vec::new())
+        let set = self.file.set.clone();
+        self.make(&folder.baseline(), vec![self.file.baseline.clone()], set)
     }
 
     /// Makes `points`, the first of them number `first`, as many at a time as the file says; whether all are

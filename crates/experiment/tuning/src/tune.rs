@@ -1,11 +1,13 @@
 //! From the study file to what was found.
 
 use crate::data::Cut;
-use crate::folder::{Folder, n_points};
+use crate::folder::{Folder, is_begun, n_points};
 use crate::loads::compromise;
 use crate::runs::{Runs, Watcher, held};
-use crate::{Cost, TuneOptions, TuneOutcome, Tuned, TuningError, TuningFile, Watch, pages, record};
-use search::{Found, Proposal, SearchError, maximise};
+use crate::{
+    Cheaper, Cost, TuneOptions, TuneOutcome, Tuned, TuningError, TuningFile, Watch, pages, record,
+};
+use search::{Found, History, Proposal, SearchError, Space, maximise};
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -39,8 +41,8 @@ pub fn tune(
     watch: &mut (dyn Watch + Send),
 ) -> Result<TuneOutcome, TuningError> {
     let file = TuningFile::read(&options.study)?;
-    let prepared = Prepared::read(&file.case, &[])?;
-    let cut = Cut::new(&file, &prepared)?;
+    let cut = Cut::new(&file, &Prepared::read(&file.case, &[])?)?;
+    let cheaper = cheaper(&file, &cut)?;
     let space = file.space()?;
     let stem = options.study.file_stem().unwrap_or_default();
     let directory = options.output.clone().unwrap_or_else(|| Path::new("runs").join(stem));
@@ -50,8 +52,15 @@ pub fn tune(
     let mut folder = Folder::open(directory.clone(), &file, options.resume)?;
     let watcher: Watcher = Mutex::new(watch);
     let runs = Runs { file: &file, stop, watcher: &watcher };
-    let settings = file.settings(cut.turbines.len());
+    let mut settings = file.settings(cut.turbines.len());
     let searched = || -> Result<Found, End> {
+        for ((own, cut), Cheaper { name, .. }) in cheaper.iter().zip(&file.cheaper) {
+            let place = directory.join(name);
+            let resume = is_begun(&place);
+            let mut folder = Folder::open(place, own, resume)?;
+            let runs = Runs { file: own, ..runs };
+            settings.cheaper.push(known_before(&runs, cut, &mut folder, &space)?);
+        }
         if !runs.baseline(&folder)? {
             return Err(End::Interrupted);
         }
@@ -73,9 +82,48 @@ pub fn tune(
     let (turbines, directory) = (cut.turbines.clone(), folder.path().to_owned());
     let page = directory.join("report.html");
     let tuned = Tuned { file, turbines, found, compromises, directory, page };
-    record::write(&tuned, &cut.outputs())?;
+    record::write(&tuned, &settings.cheaper, &cut.outputs())?;
     pages::write(&tuned)?;
     Ok(TuneOutcome::Done(Box::new(tuned)))
+}
+
+/// The cheaper sources of `file`, each as a tuning of its own with how its records are cut, which must
+/// have what `cut` has.
+///
+/// # Errors
+/// [`TuningError::OtherSource`], and those of cases that cannot be read.
+fn cheaper(file: &TuningFile, cut: &Cut) -> Result<Vec<(TuningFile, Cut)>, TuningError> {
+    let of = |(index, source): (usize, &Cheaper)| {
+        let own = file.of_cheaper(index);
+        let its = Cut::new(&own, &Prepared::read(&own.case, &own.set)?)?;
+        if its.turbines != cut.turbines {
+            let name = source.name.clone();
+            let [there, here] = [its.turbines, cut.turbines.clone()].map(|all| all.join(", "));
+            return Err(TuningError::OtherSource { name, there, here });
+        }
+        Ok((own, its))
+    };
+    file.cheaper.iter().enumerate().map(of).collect()
+}
+
+/// What the points of a cheaper source give that fill `space`.
+fn known_before(
+    runs: &Runs,
+    cut: &Cut,
+    folder: &mut Folder,
+    space: &Space,
+) -> Result<History, End> {
+    if !runs.baseline(folder)? {
+        return Err(End::Interrupted);
+    }
+    let file = runs.file;
+    let points = file.design.points(space, file.n_first, file.seed)?;
+    let proposal = Proposal { round: 0, points, expected_gain: None };
+    let mut history = History::default();
+    for (point, evaluation) in evaluated(runs, cut, folder, &proposal)? {
+        history.add(point, evaluation, cut.outputs().len())?;
+    }
+    Ok(history)
 }
 
 /// Makes the points of `proposal`, or those that were made in its place, and reads what they gave.
@@ -110,11 +158,18 @@ impl Observer for Told {
 
 /// What the tuning of `file` in `directory` will still cost at most.
 fn cost(file: &TuningFile, directory: &Path, stop: &AtomicBool) -> Result<Cost, TuningError> {
+    let of_source = |(index, source): (usize, &Cheaper)| {
+        let place = directory.join(&source.name);
+        Ok((source.name.clone(), cost(&file.of_cheaper(index), &place, stop)?))
+    };
+    let cheaper = file.cheaper.iter().enumerate().map(of_source);
+    let cheaper = cheaper.collect::<Result<Vec<_>, TuningError>>()?;
     let mut told = Told::default();
     let options = StudyOptions {
         case: file.case.clone(),
         output: Some(directory.join("point-001")),
         runs: vec![file.run.clone()],
+        overrides: file.set.clone(),
         dry_run: true,
         ..StudyOptions::default()
     };
@@ -129,5 +184,6 @@ fn cost(file: &TuningFile, directory: &Path, stop: &AtomicBool) -> Result<Cost, 
         n_at_a_time: file.parallel,
         memory: told.0.as_ref().map_or(0, |estimate| estimate.memory),
         disk: told.0.as_ref().map_or(0, |estimate| estimate.disk),
+        cheaper,
     })
 }

@@ -30,6 +30,8 @@ pub struct Cost {
     pub memory: u64,
     /// Disk of a run (bytes).
     pub disk: u64,
+    /// That of each cheaper source, by its name, made before.
+    pub cheaper: Vec<(String, Cost)>,
 }
 
 /// What was found.

@@ -140,6 +140,48 @@ fn a_tuning_finds_the_least_loss_and_goes_on_after_an_end_with_the_same_points()
     assert_eq!(longer.found.history.len(), 7);
 }
 
+/// The same turbines in steps a quarter longer tell before what helices cost; stopped in their runs and
+/// gone on with it ends the same.
+#[test]
+fn a_cheaper_source_is_made_before_and_goes_on_after_an_end() {
+    let cheaper = "[[cheaper]]\nname = \"coarse\"\nset = [\"flow.step=0.25\"]\nruns = 4\n";
+    let study = STUDY.replace("runs = 6", "runs = 3").replace("first = 3", "first = 2");
+    let [whole, other] = [(); 2].map(|()| {
+        let folder = written();
+        fs::write(folder.path().join("study.toml"), format!("{study}{cheaper}")).expect("a study");
+        folder
+    });
+    let never = AtomicBool::new(false);
+    let dry = TuneOptions { dry_run: true, ..options(whole.path()) };
+    let Ok(TuneOutcome::Estimated(cost)) = tune(&dry, &never, &mut Silent) else {
+        panic!("a cost")
+    };
+    let before = &cost.cheaper[0];
+    assert_eq!((cost.n_runs, before.0.as_str(), before.1.n_runs), (4, "coarse", 5));
+    let tuned = done(tune(&options(whole.path()), &never, &mut Silent));
+    assert_eq!(tuned.found.history.len(), 3);
+    let amplitude = tuned.found.optimum.point[0];
+    assert!(amplitude <= 1.0, "{amplitude}");
+    let read = |folder: &Path, file: &str| fs::read_to_string(folder.join("out").join(file));
+    let data = read(whole.path(), "coarse/data.csv").expect("data of the cheaper source");
+    assert_eq!(data.lines().count(), 1 + 4 * 3);
+    let text = read(whole.path(), "tuning.json").expect("numbers");
+    let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let correlation = found["cheaper"][0]["correlation"].as_f64().expect("a number");
+    assert!((0.3..=1.0).contains(&correlation), "{correlation}");
+
+    let stop = AtomicBool::new(false);
+    let mut impatient = Impatient { stop: &stop, left: 1 };
+    let outcome = tune(&options(other.path()), &stop, &mut impatient);
+    assert!(matches!(outcome, Ok(TuneOutcome::Interrupted { .. })), "{outcome:?}");
+    let again = TuneOptions { resume: true, ..options(other.path()) };
+    done(tune(&again, &never, &mut Silent));
+    for file in ["points.json", "data.csv", "coarse/data.csv", "tuning.json"] {
+        let [one, two] = [&whole, &other].map(|folder| read(folder.path(), file).expect(file));
+        assert_eq!(one, two, "{file}");
+    }
+}
+
 #[test]
 fn folders_that_do_not_fit_are_refused_and_a_dry_run_makes_nothing() {
     let folder = written();

@@ -4,6 +4,7 @@ mod control;
 pub mod examples;
 mod fields;
 mod filaments;
+mod flow;
 mod load;
 mod sweep;
 mod warning;
@@ -13,6 +14,7 @@ pub use fields::{
     Field, FieldSetting, Grid, Moments, PhaseAverages, PhaseBin, STRESSES, stress_of,
 };
 pub use filaments::{Filaments, Piece, PieceKind};
+pub use flow::{FlowSummary, GridSummary, Sector};
 pub use load::{Load, LoadKind};
 use serde::{Deserialize, Serialize};
 pub use sweep::{
@@ -194,6 +196,9 @@ pub struct TurbineSummary {
     pub rotor_speed: Statistic,
     /// Collective pitch (rad).
     pub pitch: Statistic,
+    /// The wind that comes to each quarter of its rotor; none unless it comes from a part of a record.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sectors: Vec<Sector>,
     /// Delivered excitation; absent on a turbine without one.
     pub delivered_pitch: Option<DeliveredPitch>,
     /// Power relative to the same turbine in the compared run, minus one (–).
@@ -283,35 +288,6 @@ pub struct Conditions {
 /// Direction of the wind in records that do not tell (deg).
 fn from_west() -> f64 {
     270.0
-}
-
-/// What moved the air.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FlowSummary {
-    /// Name of the flow solver, the word of `flow.solver`.
-    pub solver: String,
-    /// Whether its wind holds the rotors' wakes, so that turbines feel one another.
-    pub has_wakes: bool,
-    /// What it cannot show, in sentences; empty where nothing is said of it.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub limits: String,
-    /// The grid of the domain and those of all boxes of finer cells, each before those in it; none where all
-    /// cells are alike.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub grids: Vec<GridSummary>,
-}
-
-/// Cells of one size.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GridSummary {
-    /// Corner with the least coordinates, farm frame (m).
-    pub origin: [f64; 3],
-    /// Extent along x, y, z (m).
-    pub size: [f64; 3],
-    /// Edge of a cell (m).
-    pub spacing: f64,
-    /// Cells, those beneath boxes included (–).
-    pub n_cells: u64,
 }
 
 /// One run in numbers; `summary.json` is this, written out.

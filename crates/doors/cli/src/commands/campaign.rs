@@ -51,6 +51,9 @@ pub(crate) enum CampaignCommand {
         /// the campaign's folder when left out
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// Factors, such as the key of the seed, over which a row has the means of its tasks
+        #[arg(long, value_name = "KEY", value_delimiter = ',')]
+        mean_over: Vec<String>,
     },
     /// Print a script that has a scheduler make the tasks
     Export {
@@ -120,7 +123,9 @@ pub(crate) fn run(command: CampaignCommand) -> ExitCode {
         }
         CampaignCommand::Plan { file, output } => plan(&file, output.as_deref()),
         CampaignCommand::Status { directory, json } => status(&directory, json),
-        CampaignCommand::Collect { directory, output } => collect(&directory, output),
+        CampaignCommand::Collect { directory, output, mean_over } => {
+            collect(&directory, output, &mean_over)
+        }
         CampaignCommand::Export { directory, format, chunk } => export(&directory, format, chunk),
     };
     match done {
@@ -193,10 +198,10 @@ fn status(folder: &Path, as_json: bool) -> miette::Result<()> {
     print_text(&stands(&status))
 }
 
-fn collect(folder: &Path, output: Option<PathBuf>) -> miette::Result<()> {
+fn collect(folder: &Path, output: Option<PathBuf>, mean_over: &[String]) -> miette::Result<()> {
     let usual = if cfg!(feature = "parquet") { "results.parquet" } else { "results.csv" };
     let path = output.unwrap_or_else(|| folder.join(usual));
-    let found = campaign::collect(folder, &path)?;
+    let found = campaign::collect(folder, &path, mean_over)?;
     let missing = match found.n_missing {
         0 => String::new(),
         n => format!(", {n} tasks are not done"),

@@ -137,7 +137,12 @@ fn done(tuned: &Tuned, as_json: bool) -> Result<()> {
 }
 
 fn of_cost(cost: &Cost) -> String {
-    let Cost { n_runs, time_of_one, n_at_a_time, memory, disk } = *cost;
+    let before: String = cost
+        .cheaper
+        .iter()
+        .map(|(name, cost)| format!("cheaper source {name}: {}", of_cost(cost)))
+        .collect();
+    let Cost { n_runs, time_of_one, n_at_a_time, memory, disk, .. } = *cost;
     let time = time_of_one.map_or(String::new(), |seconds| {
         let [one, all] = [seconds, seconds * n_runs as f64]
             .map(|seconds| HumanDuration(Duration::from_secs_f64(seconds.clamp(0.0, 3.2e7))));
@@ -145,9 +150,10 @@ fn of_cost(cost: &Cost) -> String {
     });
     let [memory, disk, all] =
         [memory * n_at_a_time as u64, disk, disk * n_runs as u64].map(HumanBytes);
-    format!(
-        "at most {n_runs} runs{time}, {n_at_a_time} at a time; memory {memory}, disk {disk} a run, {all} in all\n"
-    )
+    before
+        + &format!(
+            "at most {n_runs} runs{time}, {n_at_a_time} at a time; memory {memory}, disk {disk} a run, {all} in all\n"
+        )
 }
 
 /// "7.50 ± 1.20".

@@ -6,7 +6,7 @@ use formats::linear_model::Port;
 use formats::surrogate_model::SurrogateModel;
 use report::{SurrogateCut, SurrogateFigures, SurrogateMap};
 use std::path::Path;
-use surrogate::{LeaveOneOut, Prediction, Regression};
+use surrogate::{LeaveOneOut, Prediction, Regression, Validation};
 
 /// 97.5 % point of the normal distribution (–).
 const NORMAL_97_5: f64 = 1.959_963_984_540_054;
@@ -72,22 +72,44 @@ fn cuts_of(
     model.ranges.iter().enumerate().map(one).collect()
 }
 
+/// True values beside predictions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scatter<'a> {
+    /// Pairs of them.
+    pub pairs: &'a [LeaveOneOut],
+    /// How well they agree, in words.
+    pub fit: String,
+}
+
+/// What validations say of errors, in words: `RMSPE 0.86 % of 700 inputs trained on, 1.65 % of 300 …`.
+pub fn fit_in_words(validations: &[(&str, Option<Validation>)]) -> String {
+    let told = validations.iter().filter_map(|(words, found)| Some((words, (*found)?)));
+    let one = |(words, found): (&&str, Validation)| {
+        format!("{:.2}\u{a0}% of {} inputs {words}", found.root_mean_square_percentage, found.n)
+    };
+    let told: Vec<String> = told.map(one).collect();
+    if told.is_empty() { String::new() } else { format!("RMSPE {}", told.join(", ")) }
+}
+
 /// Draws the surrogate `model`, which was read from `path`, into `folder`/figures: predicted over true
-/// values of
-/// `pairs`, cuts, and a map over `two` of its inputs; gives the figures' names.
+/// values of `scatter`, or where there is none of each training input predicted from all others; cuts,
+/// and a map over `two` of its inputs; gives the figures' names.
 ///
 /// # Errors
 /// [`DesignError::Surrogate`] where it cannot be asked, [`DesignError::Report`] where it cannot be drawn.
 pub fn draw_surrogate(
     model: &SurrogateModel,
     path: &Path,
-    pairs: Option<&[LeaveOneOut]>,
+    scatter: Option<Scatter>,
     two: Option<[usize; 2]>,
     folder: &Path,
 ) -> Result<Vec<String>, DesignError> {
     let found = regression(model, path)?;
-    let left_out = found.leave_one_out();
-    let pairs = pairs.or(left_out.as_deref()).unwrap_or_default();
+    let left_out = found.leave_one_out().unwrap_or_default();
+    let scatter = scatter.unwrap_or_else(|| Scatter {
+        fit: fit_in_words(&[("predicted from all others", Validation::of(&left_out))]),
+        pairs: &left_out,
+    });
     let cut = |cut: Cut| SurrogateCut {
         label: label(&model.inputs[cut.input]),
         places: cut.places,
@@ -105,7 +127,8 @@ pub fn draw_surrogate(
         .collect();
     let figures = SurrogateFigures {
         output: label(&model.output),
-        pairs: pairs.iter().map(|pair| [pair.value, pair.mean]).collect(),
+        pairs: scatter.pairs.iter().map(|pair| [pair.value, pair.mean]).collect(),
+        fit: scatter.fit,
         cuts: cuts_of(&found, model, path)?.into_iter().map(cut).collect(),
         maps: two.map(|two| maps(&found, model, path, two)).transpose()?,
         held: format!(

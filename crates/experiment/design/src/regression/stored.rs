@@ -131,7 +131,7 @@ pub(super) fn mean_curve(model: &SurrogateModel, path: &Path) -> Result<MeanCurv
 }
 
 /// The regression, its covariance factorised again.
-pub(super) fn regression(model: &SurrogateModel, path: &Path) -> Result<Regression, DesignError> {
+pub(crate) fn regression(model: &SurrogateModel, path: &Path) -> Result<Regression, DesignError> {
     let of = &model.observations;
     let collapsed = Collapsed {
         inputs: of.inputs.as_ref().unwrap_or(&model.points).concat(),

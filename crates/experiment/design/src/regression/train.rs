@@ -10,8 +10,8 @@ use formats::table::Samples;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use surrogate::{
-    NoiseGroups, Observations, Regression, RegressionSettings, Searched, SurrogateError, Trend,
-    Validation, shuffled,
+    LeaveOneOut, NoiseGroups, Observations, Regression, RegressionSettings, Searched,
+    SurrogateError, Trend, Validation, shuffled,
 };
 
 /// Different inputs for each hyperparameter below which bands are warned of (–).
@@ -59,6 +59,8 @@ pub struct Trained {
     pub on_test: Option<Validation>,
     /// Each input predicted from all others; none through inducing points.
     pub left_out: Option<Validation>,
+    /// True and predicted values of what was kept aside.
+    pub test_pairs: Vec<LeaveOneOut>,
     /// What a user must know.
     pub warnings: Vec<String>,
 }
@@ -102,7 +104,7 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
         let table = Pairs { samples: &data.samples, rows, n_inputs: data.n_inputs, noise };
         held(&found, &table).map_err(of)
     };
-    let Held { validation: on_test, unknown, .. } = held(&test)?;
+    let Held { validation: on_test, unknown, pairs: test_pairs } = held(&test)?;
     let [inputs, output] = [ports[..data.n_inputs].to_vec(), ports[data.n_inputs..].to_vec()];
     let n_different = found.n_inputs();
     let description = format!(
@@ -117,6 +119,7 @@ pub fn train(question: &TrainQuestion) -> Result<Trained, DesignError> {
         n: [data.samples.lines.len(), n_different, data.n_different(&test)],
         on_training: held(&training)?.validation,
         on_test,
+        test_pairs,
         left_out: found.leave_one_out().as_deref().and_then(Validation::of),
         model: model(description, [inputs, output], &found),
     })

@@ -29,7 +29,9 @@ use tempfile::TempDir;
 /// Whether a case asks for an output whose kind studies announce, which nothing here knows: their own tests
 /// read it.
 pub(crate) fn asks_for_what_studies_write(text: &str) -> bool {
-    text.contains("kind = \"phase-averages\"")
+    ["phase-averages", "wind-slices"]
+        .iter()
+        .any(|kind| text.contains(&format!("kind = \"{kind}\"")))
 }
 
 /// Whatever a reader refuses a file with.

@@ -1,12 +1,29 @@
-//! Samples in CSV: a row for each, without any time.
+//! Samples in CSV or Parquet: a row for each, without any time.
 
 use super::head::Column;
 use super::{GREATEST, csv, names};
 use crate::FileError;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// What such a file holds, in words.
 const WHAT: &str = "a table of samples";
+
+/// How tables of another format are read: by a room that holds its library, so that this one does not.
+#[derive(Debug)]
+pub struct OtherTable {
+    /// Names and units of all columns of the file at a path.
+    pub columns: fn(&Path) -> Result<Vec<Column>, FileError>,
+    /// Values of the column of this number, the first is 0, a row each; none where a row has none.
+    pub values: fn(&Path, usize) -> Result<Vec<Option<f64>>, FileError>,
+}
+
+static PARQUET: OnceLock<&'static OtherTable> = OnceLock::new();
+
+/// Has `.parquet` read by `table`.
+pub fn announce_parquet(table: &'static OtherTable) {
+    PARQUET.get_or_init(|| table);
+}
 
 /// Chosen columns of all rows.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,50 +34,84 @@ pub struct Samples {
     pub columns: Vec<Column>,
     /// Values, those of one row together, in the units of the columns.
     pub values: Vec<f64>,
-    /// Line of each row in the file, the first is 1.
+    /// Line of each row in the file, the first is 1; in Parquet its row.
     pub lines: Vec<u64>,
 }
 
 impl Samples {
-    /// Reads the columns `wanted` of the CSV at `path`, names in its first line.
+    /// Reads the columns `wanted` of the table at `path`: Parquet where its name ends so, else CSV, names in
+    /// its first line.
     ///
     /// # Errors
     /// [`FileError`] with line and column: a name that the file has not, a row cut short, what is not a
     /// number, not finite or beyond ±1e30, and no row at all.
     pub fn read(path: &Path, wanted: &[&str]) -> Result<Self, FileError> {
-        let refusal = |problem: String, fix: &str| FileError::content(WHAT, path, problem, fix);
+        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("parquet")) {
+            return Self::read_parquet(path, wanted);
+        }
         let (columns, mut rows) = csv::columns(path)?;
-        let found = wanted.iter().map(|name| {
-            names::find(name, &columns).map_err(|(problem, fix)| {
-                refusal(problem.replace("channel", "column"), &fix.replace("channel", "column"))
-            })
-        });
-        let found = found.collect::<Result<Vec<usize>, FileError>>()?;
-        let (mut row, mut values, mut lines) = (vec![0.0; wanted.len()], Vec::new(), Vec::new());
+        let found = places(path, wanted, &columns)?;
+        let mut all = Self::none(path, &found, &columns);
+        let mut row = vec![0.0; wanted.len()];
         while rows.read(path, &columns, &found, &mut row)? {
-            let line = rows.line_number();
-            // Not so of what is not a number, too.
-            let is_sound = |value: &f64| value.abs() <= GREATEST;
-            if let Some(slot) = row.iter().position(|value| !is_sound(value)) {
-                let (name, value) = (&columns[found[slot]].name, row[slot]);
-                return Err(refusal(
-                    format!(
-                        "line {line}: {name} is {value:?}, not a finite number within ±{GREATEST:e}"
-                    ),
-                    "leave the row out, or find out why the program that wrote it had no number there",
-                ));
-            }
-            values.extend_from_slice(&row);
-            lines.push(line);
+            all.add("line", rows.line_number(), &row)?;
         }
-        if lines.is_empty() {
-            return Err(refusal(
-                "it has no rows".into(),
-                "give a row for each sample below the names",
-            ));
+        all.checked()
+    }
+
+    fn read_parquet(path: &Path, wanted: &[&str]) -> Result<Self, FileError> {
+        let Some(table) = PARQUET.get() else {
+            let problem = "this program was built without Parquet";
+            let fix = "give it as CSV, or build the program with the feature `parquet`";
+            return Err(FileError::content(WHAT, path, problem, fix));
+        };
+        let columns = (table.columns)(path)?;
+        let found = places(path, wanted, &columns)?;
+        let mut all = Self::none(path, &found, &columns);
+        let values = found.iter().map(|column| (table.values)(path, *column));
+        let values = values.collect::<Result<Vec<_>, FileError>>()?;
+        let n_rows = values.first().map_or(0, Vec::len);
+        for row in 0..n_rows {
+            // A row of a shorter column has no value, as one that is left empty.
+            let value = |column: &Vec<Option<f64>>| column.get(row).copied().flatten();
+            let values: Vec<f64> =
+                values.iter().map(|column| value(column).unwrap_or(f64::NAN)).collect();
+            all.add("row", row as u64 + 1, &values)?;
         }
+        all.checked()
+    }
+
+    /// The columns `found` of `columns`, and no row yet.
+    fn none(path: &Path, found: &[usize], columns: &[Column]) -> Self {
         let columns = found.iter().map(|index| columns[*index].clone()).collect();
-        Ok(Self { path: path.to_owned(), columns, values, lines })
+        Self { path: path.to_owned(), columns, values: Vec::new(), lines: Vec::new() }
+    }
+
+    /// Takes in the row at `line`, which is a line or a row of the file, as `word` says.
+    fn add(&mut self, word: &str, line: u64, row: &[f64]) -> Result<(), FileError> {
+        // Not so of what is not a number, too.
+        let is_sound = |value: &f64| value.abs() <= GREATEST;
+        if let Some(slot) = row.iter().position(|value| !is_sound(value)) {
+            let (name, value) = (&self.columns[slot].name, row[slot]);
+            let problem = format!(
+                "{word} {line}: {name} is {value:?}, not a finite number within ±{GREATEST:e}"
+            );
+            let fix =
+                "leave the row out, or find out why the program that wrote it had no number there";
+            return Err(FileError::content(WHAT, &self.path, problem, fix));
+        }
+        self.values.extend_from_slice(row);
+        self.lines.push(line);
+        Ok(())
+    }
+
+    /// The same where there is any row.
+    fn checked(self) -> Result<Self, FileError> {
+        if self.lines.is_empty() {
+            let fix = "give a row for each sample below the names";
+            return Err(FileError::content(WHAT, &self.path, "it has no rows", fix));
+        }
+        Ok(self)
     }
 
     /// Row `index`.
@@ -68,6 +119,17 @@ impl Samples {
         let n_columns = self.columns.len();
         &self.values[index * n_columns..(index + 1) * n_columns]
     }
+}
+
+/// Places of the columns `wanted` of the table at `path` among its `columns`.
+fn places(path: &Path, wanted: &[&str], columns: &[Column]) -> Result<Vec<usize>, FileError> {
+    let place = |name: &&str| {
+        names::find(name, columns).map_err(|(problem, fix)| {
+            let [problem, fix] = [problem, fix].map(|text| text.replace("channel", "column"));
+            FileError::content(WHAT, path, problem, &fix)
+        })
+    };
+    wanted.iter().map(place).collect()
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ pub struct SurrogateFigures {
     pub output: String,
     /// True and predicted value of each point (unit of the output); may be empty.
     pub pairs: Vec<[f64; 2]>,
+    /// How well they agree, in words; may be empty.
+    pub fit: String,
     /// A cut along each input.
     pub cuts: Vec<SurrogateCut>,
     /// The mean over two inputs, and the half width of its 95 % band; may be absent.
@@ -91,8 +93,9 @@ fn scatter(of: &SurrogateFigures) -> Option<Figure> {
         inner.push(Shape::Circle { center, radius: 2.2, look });
     }
     shapes.push(frame.panel(inner, ["", ""]));
+    let fit = if of.fit.is_empty() { String::new() } else { format!(" {}.", of.fit) };
     let caption =
-        "Predicted over true values; a point on the line is predicted exactly.".to_owned();
+        format!("Predicted over true values; a point on the line is predicted exactly.{fit}");
     Some(figure("surrogate-scatter", "Predicted and true", caption, side + 76.0, shapes))
 }
 

@@ -1,8 +1,8 @@
 //! What a study file says, held against itself and its case.
 
 use super::{
-    AcquisitionName, FIX, KernelName, Raw, RawBudget, RawDesign, RawVariable, TuningFile, Variable,
-    WHAT, case_path,
+    AcquisitionName, Cheaper, FIX, KernelName, Raw, RawBudget, RawCheaper, RawDesign, RawVariable,
+    TuningFile, Variable, WHAT, case_path,
 };
 use crate::TuningError;
 use analysis::statistics::BLOCK_LENGTH;
@@ -66,8 +66,16 @@ pub(super) fn checked(raw: Raw, path: &Path, text: String) -> Result<TuningFile,
             let slope = |channel: &String| loads.exponent.unwrap_or_else(|| usual_slope(channel));
             loads.channels.iter().map(|channel| (channel.clone(), slope(channel))).collect()
         }),
+        set: Vec::new(),
+        cheaper: Vec::new(),
     };
     ends_are_sound(&file, &raw.variable, &place)?;
+    for one in &raw.cheaper {
+        let found = cheaper(one, &file, &place)?;
+        file.cheaper.push(found);
+        let index = file.cheaper.len() - 1;
+        ends_are_sound(&file.of_cheaper(index), &raw.variable, &place)?;
+    }
     file.text = text;
     Ok(file)
 }
@@ -90,6 +98,62 @@ fn budget(budget: &RawBudget, place: &Text) -> Result<(usize, usize, Option<f64>
     let (key, expected) = ("budget.least_gain", "a share above 0 and below 1 is expected");
     let fix = "write 0.001 for a thousandth of the baseline's power";
     Err(place.refused(least.span(), key, expected, fix))
+}
+
+/// A source of cheaper data.
+fn cheaper(
+    spanned: &Spanned<RawCheaper>,
+    file: &TuningFile,
+    place: &Text,
+) -> Result<Cheaper, TuningError> {
+    let RawCheaper { name, case, set, runs } = spanned.get_ref();
+    let refused = |key: &str, expected: &str, fix: &str| {
+        Err(place.refused(spanned.span(), key, expected, fix))
+    };
+    let is_folder = |letter: char| letter.is_alphanumeric() || letter == '-' || letter == '_';
+    let is_taken = name == "baseline" || name.starts_with("point-") || name == "figures";
+    if name.is_empty() || is_taken || !name.chars().all(is_folder) {
+        let expected = "letters, digits and - are expected, and no name of another folder";
+        return refused("cheaper.name", expected, "write name = \"coarse\", say");
+    }
+    if file.cheaper.iter().any(|other| other.name == *name) {
+        let expected = format!("two are called {name}");
+        return refused("cheaper.name", &expected, "give each a name of its own");
+    }
+    if case.is_none() && set.is_empty() {
+        let expected = "`case` or `set` is expected: else it is the case that is tuned";
+        return refused("cheaper", expected, "write set = [\"flow.cells_per_diameter=8\"], say");
+    }
+    if *runs.get_ref() < 2 {
+        let fix = "as many as fill the ranges: ten for two variables, say";
+        return Err(place.refused(runs.span(), "cheaper.runs", "2 or more are expected", fix));
+    }
+    let case = case.as_ref().map_or(file.case.clone(), |name| case_path(place.path, name));
+    let read = shipped::read(&case, set);
+    let found = match read {
+        Ok(found) => found,
+        Err(error) => {
+            let lines = error.to_lines();
+            let first = lines.lines().next().unwrap_or_default();
+            let expected = format!("the case {} cannot be read: {first}", case.display());
+            return refused(
+                "cheaper.set",
+                &expected,
+                "name keys of that case; docs/case-file.md lists them",
+            );
+        }
+    };
+    for run in [&file.run, &file.baseline] {
+        if !found.case.runs.iter().any(|own| own.name == *run) {
+            let expected = format!("the case {} has no run called `{run}`", case.display());
+            return refused(
+                "cheaper.case",
+                &expected,
+                "give it the runs of the case that is tuned",
+            );
+        }
+    }
+    Ok(Cheaper { name: name.clone(), case, set: set.clone(), n_runs: *runs.get_ref() })
 }
 
 /// Length of a block (s).
@@ -260,7 +324,7 @@ fn ends_are_sound(
 ) -> Result<(), TuningError> {
     for (variable, raw) in file.variables.iter().zip(raw) {
         for value in [variable.axis.from, variable.axis.to] {
-            let overrides = variable.overrides(&file.run, value);
+            let overrides = [file.set.clone(), variable.overrides(&file.run, value)].concat();
             if let Err(error) = shipped::read(&file.case, &overrides) {
                 let lines = error.to_lines();
                 let first = lines.lines().next().unwrap_or_default();

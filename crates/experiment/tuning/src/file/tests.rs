@@ -108,6 +108,33 @@ fn what_is_wrong_is_told_with_its_line_and_key() {
     assert!(unknown.to_string().contains("blok"), "{unknown}");
 }
 
+#[test]
+fn a_cheaper_source_is_read_or_refused_with_its_line() {
+    let with = |text: &str| read(&format!("{STUDY}[[cheaper]]\n{text}"));
+    let file =
+        with("name = \"coarse\"\nset = [\"flow.step=0.4\"]\nruns = 7\n").expect("a sound file");
+    let own = file.of_cheaper(0);
+    assert_eq!((own.budget, own.n_first, own.cheaper.len()), (7, 7, 0));
+    assert_eq!(own.overrides(&[0.25, 4.0])[0], "flow.step=0.4");
+    assert_eq!(own.overrides(&[0.25, 4.0])[1..], file.overrides(&[0.25, 4.0])[..]);
+    let n_lines = STUDY.lines().count();
+    for (text, line, words) in [
+        ("name = \"a/b\"\nset = [\"flow.step=0.4\"]\nruns = 7\n", 1, "`cheaper.name`"),
+        ("name = \"baseline\"\nset = [\"flow.step=0.4\"]\nruns = 7\n", 1, "`cheaper.name`"),
+        ("name = \"coarse\"\nruns = 7\n", 1, "`case` or `set` is expected"),
+        ("name = \"coarse\"\nset = [\"flow.step=0.4\"]\nruns = 1\n", 4, "`cheaper.runs`"),
+        ("name = \"coarse\"\nset = [\"flow.stp=0.4\"]\nruns = 7\n", 1, "stp"),
+        ("name = \"coarse\"\ncase = \"quickstart\"\nruns = 7\n", 1, "no run called `helix`"),
+    ] {
+        let error = with(text).expect_err(text);
+        let TuningError::File(FileError::Content { problem, .. }) = &error else {
+            panic!("{text}: {error:?}")
+        };
+        let place = format!("line {}, ", n_lines + line);
+        assert!(problem.starts_with(&place) && problem.contains(words), "{text}: {problem}");
+    }
+}
+
 /// Where a lidar loop holds the hub vortex, as two numbers beside the place that the case gives.
 const REFERENCE: &str = r#"case = "case.toml"
 run = "closed-loop"

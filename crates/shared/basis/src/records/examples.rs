@@ -3,8 +3,8 @@
 use super::{
     BearingLoad, Conditions, ControlSetting, ControlSummary, Cost, DeliveredPitch, Finding,
     FlowSummary, GridSummary, Load, LoadKind, MeanderingAxis, MeanderingSummary, PitchDuty,
-    PitchExcitation, PitchResponse, Rotor, SCHEMA_VERSION, SettingValue, Statistic, Summary,
-    TurbineSummary, Warning, WarningKind,
+    PitchExcitation, PitchResponse, Rotor, SCHEMA_VERSION, Sector, SettingValue, Statistic,
+    Summary, TurbineSummary, Warning, WarningKind,
 };
 use crate::Sense;
 
@@ -24,6 +24,7 @@ pub fn turbine(name: &str, power: f64) -> TurbineSummary {
         thrust: statistic(1.9e6),
         rotor_speed: statistic(0.7),
         pitch: statistic(0.0),
+        sectors: Vec::new(),
         delivered_pitch: None,
         power_gain: None,
         pitch_response: None,
@@ -172,6 +173,12 @@ fn bearing_loads() -> Vec<BearingLoad> {
     positions.map(|at| BearingLoad { position_deg: at, load_kn_m: 1e4 }).collect()
 }
 
+fn sectors() -> Vec<Sector> {
+    let sector =
+        |name: &str| Sector { name: name.to_owned(), wind_speed: 7.9, turbulence_intensity: 0.08 };
+    ["up", "right", "down", "left"].map(sector).to_vec()
+}
+
 fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let axis = MeanderingAxis { amplitude: 7.5e6, reference: Some(5e6), factor: Some(1.5) };
     let plain = helix(Sense::CounterClockwise, 4.0);
@@ -184,6 +191,7 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let loads = kinds.map(|kind| Load { change: Some(gain), ..load("RootMyb1", kind, 12_340.0) });
     TurbineSummary {
         rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0], yaw_deg: 0.0 }),
+        sectors: sectors(),
         control: ControlSummary {
             settings: Some(vec![ControlSetting {
                 key: "amplitude_deg".to_owned(),

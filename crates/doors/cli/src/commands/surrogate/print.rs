@@ -98,6 +98,42 @@ pub(super) fn validations_text(rows: &[(&str, Option<SurrogateValidation>)], uni
         + "RMSPE: root mean square of the error over the true value; rows of the same inputs count as their mean; in parentheses the 95 % interval of the share (Wilson)\n"
 }
 
+/// A row for each of several surrogates of one table, as document 004 has them in its table 4.
+pub(super) fn outputs_text(all: &[Trained]) -> String {
+    let mut table = TextTable::new(
+        [Column::words("output")],
+        [
+            Column::number("trained on"),
+            Column::number("RMSPE (%)"),
+            Column::number("kept aside"),
+            Column::number("RMSPE (%)"),
+            Column::number("explained (%)"),
+            Column::number("in 95 % band (%)"),
+        ],
+    );
+    let percentage = |found: Option<SurrogateValidation>| {
+        found.map_or(String::new(), |found| format!("{:.2}", found.root_mean_square_percentage))
+    };
+    for found in all {
+        let [_, n_training, n_test] = found.n;
+        let covered = found.on_test.and_then(|found| found.covered_95);
+        table.row([
+            found.model.output.name.clone(),
+            n_training.to_string(),
+            percentage(found.on_training),
+            n_test.to_string(),
+            percentage(found.on_test),
+            found.on_test.map_or(String::new(), |found| format!("{:.1}", 100.0 * found.explained)),
+            covered.map_or(String::new(), |found| {
+                let [low, high] = found.interval;
+                format!("{:.1} ({low:.1} to {high:.1})", found.share)
+            }),
+        ]);
+    }
+    table.fitted(columns())
+        + "RMSPE: root mean square of the error over the true value (document 004, Eq. 13); rows of the same inputs count as their mean; explained and band: of what was kept aside\n"
+}
+
 fn validation_json(found: Option<SurrogateValidation>) -> serde_json::Value {
     found.map_or(serde_json::Value::Null, |found| {
         json!({

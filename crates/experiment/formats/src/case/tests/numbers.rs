@@ -9,8 +9,9 @@ use std::fs;
 use std::path::Path;
 
 /// Keys whose numbers may be negative: places, angles, exponents.
-const SIGNED: [&str; 6] = [
+const SIGNED: [&str; 7] = [
     "turbine.position_diameters",
+    "wind.cut.shift",
     "output.crosswind_diameters",
     "wind.shear_exponent",
     "offset_deg",

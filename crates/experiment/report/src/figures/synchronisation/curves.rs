@@ -64,8 +64,11 @@ pub(super) fn curves(figure: &CurveFigure) -> Option<Figure> {
     if start >= end {
         return None;
     }
-    let found = figure.panels.iter().flat_map(|panel| &panel.points).map(|point| point[1]);
-    let values = curves().flat_map(|point| point.band_95).chain(found).chain([0.0]);
+    let found = || figure.panels.iter().flat_map(|panel| &panel.points);
+    let values = curves().flat_map(|point| point.band_95);
+    let values = values.chain(found().map(|point| point[1])).chain([0.0]);
+    let [start, end] =
+        found().fold([start, end], |[low, high], point| [low.min(point[0]), high.max(point[0])]);
     let (x, y) = (Scale::linear(start, end), Scale::around(values, 0.06));
     let n_columns = figure.panels.len().min(MOST);
     let width = (WIDTH - LEFT - 24.0 - GAP[0] * (n_columns - 1) as f64) / n_columns as f64;

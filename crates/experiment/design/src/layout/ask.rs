@@ -1,0 +1,252 @@
+//! What surrogates are asked of a layout: the wind on the quarters of each rotor, its yaw, its control.
+
+use super::file::{LayoutFile, WHAT};
+use crate::DesignError;
+use crate::regression::regression;
+use flow::inflow::{CutPlanes, Disc, PlaneMeans, SECTOR_NAMES};
+use formats::surrogate_model::SurrogateModel;
+use formats::{FileError, turbulence_box};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use surrogate::{Prediction, Regression};
+
+/// Where a surrogate's input comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    /// Mean speed on a quarter of the rotor.
+    Speed(usize),
+    /// Turbulence intensity there.
+    Intensity(usize),
+    /// Yaw misalignment.
+    Yaw,
+    /// What the strategy says.
+    Given,
+}
+
+/// Whether the input called `input` is what `name` says: all of its name, or what follows a dot in it.
+fn is_called(input: &str, name: &str) -> bool {
+    input.strip_suffix(name).is_some_and(|front| front.is_empty() || front.ends_with('.'))
+}
+
+impl Source {
+    fn of(input: &str) -> Self {
+        for (quarter, name) in SECTOR_NAMES.iter().enumerate() {
+            if is_called(input, &format!("sector_{name}.wind_speed")) {
+                return Self::Speed(quarter);
+            }
+            if is_called(input, &format!("sector_{name}.turbulence_intensity")) {
+                return Self::Intensity(quarter);
+            }
+        }
+        if is_called(input, "yaw_deg") { Self::Yaw } else { Self::Given }
+    }
+}
+
+/// A surrogate, with what its inputs are.
+pub(super) struct Surrogate {
+    /// What the layout calls it.
+    pub(super) name: String,
+    pub(super) path: PathBuf,
+    pub(super) model: SurrogateModel,
+    regression: Regression,
+    sources: Vec<Source>,
+}
+
+/// One turbine in one wind.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Question {
+    /// Strategy and turbine, by their places in the file.
+    pub(super) strategy: usize,
+    pub(super) turbine: usize,
+    /// How far the rotor stands to the left of the middle of its record (m).
+    pub(super) shift: f64,
+    /// How far the wind is turned counter-clockwise from the layout's axis (deg).
+    pub(super) direction: f64,
+    /// An input that has another value than the strategy's.
+    pub(super) instead: Option<(String, f64)>,
+}
+
+/// All that is asked.
+pub(super) struct Asked<'a> {
+    path: &'a Path,
+    file: &'a LayoutFile,
+    pub(super) surrogates: Vec<Surrogate>,
+    /// Means of each record.
+    winds: BTreeMap<PathBuf, PlaneMeans>,
+}
+
+impl<'a> Asked<'a> {
+    /// Reads surrogates and records of the layout `file` at `path`.
+    ///
+    /// # Errors
+    /// [`DesignError`] naming the file and what is wrong with it.
+    pub(super) fn new(path: &'a Path, file: &'a LayoutFile) -> Result<Self, DesignError> {
+        let read = |(name, path): (&String, &PathBuf)| {
+            let model = SurrogateModel::read(path)?;
+            let regression = regression(&model, path)?;
+            let sources = model.inputs.iter().map(|port| Source::of(&port.name)).collect();
+            let (name, path) = (name.clone(), path.clone());
+            Ok(Surrogate { name, path, model, regression, sources })
+        };
+        let surrogates =
+            file.surrogates.iter().map(read).collect::<Result<Vec<_>, DesignError>>()?;
+        let mut asked = Self { path, file, surrogates, winds: BTreeMap::new() };
+        asked.check_names()?;
+        for record in file.strategy.iter().flat_map(|strategy| strategy.wind.values()) {
+            if !asked.winds.contains_key(record) {
+                asked.winds.insert(record.clone(), means(record, file)?);
+            }
+        }
+        Ok(asked)
+    }
+
+    fn refused(&self, problem: String, fix: String) -> DesignError {
+        FileError::content(WHAT, self.path, problem, &fix).into()
+    }
+
+    /// Whether every input that is given is one of a surrogate.
+    fn check_names(&self) -> Result<(), DesignError> {
+        let ports =
+            || self.surrogates.iter().flat_map(|one| one.model.inputs.iter().zip(&one.sources));
+        let is_own = |name: &str| {
+            ports().any(|(port, source)| {
+                matches!(source, Source::Given | Source::Yaw) && is_called(&port.name, name)
+            })
+        };
+        let refused = |key: String, name: &str| {
+            let own: BTreeSet<&str> = ports()
+                .filter(|(_, source)| matches!(source, Source::Given | Source::Yaw))
+                .map(|(port, _)| port.name.as_str())
+                .collect();
+            let own = own.into_iter().collect::<Vec<_>>().join(", ");
+            let problem = format!("{key}: no surrogate has the input {name}");
+            self.refused(problem, format!("give one of {own}, or leave it out"))
+        };
+        for strategy in &self.file.strategy {
+            for (turbine, inputs) in &strategy.inputs {
+                if let Some(name) = inputs.keys().find(|name| !is_own(name)) {
+                    let key = format!("strategy {}, inputs.{turbine}", strategy.name);
+                    return Err(refused(key, name));
+                }
+            }
+        }
+        match &self.file.along {
+            Some(along) if !is_own(&along.input) => {
+                Err(refused("along.input".to_owned(), &along.input))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What all surrogates say to `questions`: those of one surrogate together.
+    ///
+    /// # Errors
+    /// [`DesignError`] for an input that nothing tells, and for a rotor that leaves its record.
+    pub(super) fn answers(
+        &self,
+        questions: &[Question],
+    ) -> Result<Vec<Vec<Prediction>>, DesignError> {
+        let answers = |one: &Surrogate| {
+            let points = self.points(one, questions)?;
+            let failed = |source| DesignError::Surrogate { path: one.path.clone(), source };
+            one.regression.predict(&points.concat(), 0).map_err(failed)
+        };
+        self.surrogates.iter().map(answers).collect()
+    }
+
+    /// Inputs of `surrogate` at `questions`.
+    fn points(
+        &self,
+        surrogate: &Surrogate,
+        questions: &[Question],
+    ) -> Result<Vec<Vec<f64>>, DesignError> {
+        questions.iter().map(|question| self.point(surrogate, question)).collect()
+    }
+
+    fn point(&self, surrogate: &Surrogate, question: &Question) -> Result<Vec<f64>, DesignError> {
+        let strategy = &self.file.strategy[question.strategy];
+        let turbine = &self.file.turbine[question.turbine].name;
+        let record = &strategy.wind[turbine];
+        let disc =
+            Disc { y: question.shift, z: self.file.hub_height, radius: 0.5 * self.file.diameter };
+        let sectors = self.winds[record].sectors(disc).map_err(|error| {
+            let problem = format!(
+                "strategy {}, turbine {turbine}, {:.1} m to the left of the middle of {}: {error}",
+                strategy.name,
+                question.shift,
+                record.display()
+            );
+            self.refused(
+                problem,
+                "record a wider or higher slice, or take a smaller range".to_owned(),
+            )
+        })?;
+        let value = |(port, source): (&formats::linear_model::Port, &Source)| {
+            let instead = question.instead.iter().find(|(name, _)| is_called(&port.name, name));
+            let own = strategy.inputs.get(turbine).into_iter().flatten();
+            let given = instead.map(|(_, value)| *value).or_else(|| {
+                own.into_iter().find(|(name, _)| is_called(&port.name, name)).map(|(_, v)| *v)
+            });
+            match *source {
+                Source::Speed(quarter) => Ok(sectors[quarter].wind_speed),
+                Source::Intensity(quarter) => Ok(sectors[quarter].turbulence_intensity),
+                // The nacelle stays where it is when the wind turns.
+                Source::Yaw => Ok(given.unwrap_or(0.0) - question.direction),
+                Source::Given => given.ok_or_else(|| {
+                    let problem = format!(
+                        "strategy {} does not tell the input {} of the surrogate {} for turbine {turbine}",
+                        strategy.name, port.name, surrogate.name
+                    );
+                    self.refused(problem, format!("add inputs.{turbine} = {{ \"{}\" = … }}", port.name))
+                }),
+            }
+        };
+        surrogate.model.inputs.iter().zip(&surrogate.sources).map(value).collect()
+    }
+
+    /// A sentence for each input of a surrogate that leaves at `questions` what it was trained on.
+    ///
+    /// # Errors
+    /// As [`answers`](Self::answers).
+    pub(super) fn outside(&self, questions: &[Question]) -> Result<Vec<String>, DesignError> {
+        let mut told = Vec::new();
+        for surrogate in &self.surrogates {
+            let points = self.points(surrogate, questions)?;
+            for (input, [low, high]) in surrogate.model.ranges.iter().enumerate() {
+                let bearing = 1e-9 * (high - low);
+                let beyond =
+                    |place: usize| (low - points[place][input]).max(points[place][input] - high);
+                let out: Vec<usize> =
+                    (0..points.len()).filter(|place| beyond(*place) > bearing).collect();
+                let furthest = out.iter().max_by(|a, b| beyond(**a).total_cmp(&beyond(**b)));
+                let Some(furthest) = furthest else { continue };
+                let (question, port) = (&questions[*furthest], &surrogate.model.inputs[input]);
+                told.push(format!(
+                    "{}: {} of {} questions lie outside the {low} to {high} {} of {} that it was trained on, the furthest is {} (strategy {}, turbine {}); it says little there",
+                    surrogate.name,
+                    out.len(),
+                    points.len(),
+                    port.unit,
+                    port.name,
+                    points[*furthest][input],
+                    self.file.strategy[question.strategy].name,
+                    self.file.turbine[question.turbine].name,
+                ));
+            }
+        }
+        Ok(told)
+    }
+}
+
+/// Means over the block of the record at `path` that the layout `file` takes.
+fn means(path: &Path, file: &LayoutFile) -> Result<PlaneMeans, DesignError> {
+    const RECORD: &str = "a record of wind";
+    let planes = turbulence_box::open(path)?;
+    let mut planes = CutPlanes::new(planes, &file.cut(), file.hub_height).map_err(|error| {
+        FileError::content(RECORD, path, error.to_string(), "change `block` of the layout")
+    })?;
+    PlaneMeans::of(&mut planes, file.wind_speed).map_err(|error| {
+        let fix = "record it again, or name another one";
+        FileError::content(RECORD, path, error.to_string(), fix).into()
+    })
+}
