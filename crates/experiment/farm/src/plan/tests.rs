@@ -40,6 +40,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
             air_density: 1.225,
             kinematic_viscosity: 1.5e-5,
             turbulence_model: TurbulenceModel::Mann,
+            grid: None,
             planes: None,
             precursor: None,
             precursor_beside: false,

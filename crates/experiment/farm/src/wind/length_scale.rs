@@ -49,6 +49,7 @@ mod tests {
             air_density: 1.225,
             kinematic_viscosity: 1.46e-5,
             turbulence_model: TurbulenceModel::Mann,
+            grid: None,
             planes: None,
             precursor: None,
             precursor_beside: false,
