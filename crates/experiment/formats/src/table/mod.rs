@@ -11,7 +11,7 @@ mod samples;
 pub(crate) mod text;
 
 pub use head::Column;
-pub use samples::{OtherTable, Samples, announce_parquet};
+pub use samples::{ColumnValues, OtherTable, Samples, announce_parquet};
 
 use crate::{FileError, openfast_output};
 use head::{Head, WHAT};

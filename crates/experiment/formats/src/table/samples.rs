@@ -9,13 +9,16 @@ use std::sync::OnceLock;
 /// What such a file holds, in words.
 const WHAT: &str = "a table of samples";
 
+/// Values of a column, a row each; none where a row has none.
+pub type ColumnValues = Vec<Option<f64>>;
+
 /// How tables of another format are read: by a room that holds its library, so that this one does not.
 #[derive(Debug)]
 pub struct OtherTable {
     /// Names and units of all columns of the file at a path.
     pub columns: fn(&Path) -> Result<Vec<Column>, FileError>,
-    /// Values of the column of this number, the first is 0, a row each; none where a row has none.
-    pub values: fn(&Path, usize) -> Result<Vec<Option<f64>>, FileError>,
+    /// Those of the column of this number, the first is 0.
+    pub values: fn(&Path, usize) -> Result<ColumnValues, FileError>,
 }
 
 static PARQUET: OnceLock<&'static OtherTable> = OnceLock::new();
