@@ -10,8 +10,8 @@ use small::{options, written};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A turbine, and a place behind it where the wind over a rotor is recorded, with and without the turbine;
-/// WIND and SOLVER are to be named.
+/// A turbine and a place behind it where the wind over a rotor is recorded: with the turbine, and without it,
+/// when another stands far behind; WIND is to be named.
 const CASE: &str = r#"
 name = "small"
 [wind]
@@ -20,11 +20,14 @@ turbulence_intensity = 0.1
 shear_exponent = 0.0
 WIND
 [flow]
-solver = "SOLVER"
+solver = "vortex"
 step = 0.2
+near_wake_diameters = 0.1
+far_wake_filaments = 4
+points_per_diameter = 4
 [time]
-spin_up = 20.0
-duration = 50.0
+spin_up = 40.0
+duration = 70.0
 [[turbine]]
 name = "T1"
 model = "nrel-5mw"
@@ -37,6 +40,12 @@ model = "nrel-5mw"
 position_diameters = [1.0, 0.0]
 structure = "rigid"
 stall = "steady"
+[[turbine]]
+name = "T3"
+model = "nrel-5mw"
+position_diameters = [4.0, 0.0]
+structure = "rigid"
+stall = "steady"
 [[run]]
 name = "free"
 control.T1 = { kind = "absent" }
@@ -44,21 +53,15 @@ control.T2 = { kind = "absent" }
 [[run]]
 name = "behind"
 control.T2 = { kind = "absent" }
+control.T3 = { kind = "absent" }
 [output]
 inflow_at = ["T2"]
 "#;
 
-/// What wakes are made of.
-const WAKES: &str = "near_wake_diameters = 0.1\nfar_wake_filaments = 4\npoints_per_diameter = 4";
-
-/// Makes the runs in `wind` that `solver` moves, in `folder`.
-fn made(folder: &Path, wind: &str, solver: &str) -> PathBuf {
-    let wakes = if solver == "vortex" { WAKES } else { "" };
-    let text = CASE.replace("WIND", wind).replace("SOLVER", solver);
-    let text = text.replace("step = 0.2", &format!("step = 0.2\n{wakes}"));
-    fs::write(folder.join("case.toml"), text).expect("a case");
-    let name = format!("out-{solver}");
-    small::done(&study::StudyOptions { output: Some(folder.join(name)), ..options(folder) })
+/// Makes the runs in `wind`, in `folder`.
+fn made(folder: &Path, wind: &str) -> PathBuf {
+    fs::write(folder.join("case.toml"), CASE.replace("WIND", wind)).expect("a case");
+    small::done(&options(folder))
 }
 
 /// The wind over T2's rotor in `run`, as it was recorded.
@@ -87,7 +90,7 @@ fn middle(path: &Path) -> [f64; 2] {
 
 /// Writes a box of wind, gusts of 45 m that swing by 1 m/s about 9 m/s, all across alike.
 fn blow(path: &Path) {
-    let n_points = [200, 13, 13];
+    let n_points = [600, 13, 13];
     let across = n_points[1] * n_points[2];
     let gust = |plane: usize| (std::f32::consts::TAU * plane as f32 / 10.0).sin();
     let n = n_points.iter().product::<usize>();
@@ -118,16 +121,13 @@ fn files_of_wind_of_each_format_blow_alike() {
     let made = ["w.bts", "w.wnd", "w.toml"].map(|name| {
         let folder = written("");
         blow(&folder.path().join(name));
-        let planes = format!("planes = \"{name}\"");
-        let outs = ["vortex", "planes"].map(|solver| made(folder.path(), &planes, solver));
-        // Without a turbine the air is the file's, whatever else moves it.
-        let [free, prescribed] = outs.each_ref().map(|out| fs::read(recorded(out, "free")));
-        assert_eq!(free.expect("a record"), prescribed.expect("a record"), "{name}");
-        let [of_file, behind] = ["free", "behind"].map(|run| middle(&recorded(&outs[0], run)));
+        let out = made(folder.path(), &format!("planes = \"{name}\""));
+        let [of_file, behind] = ["free", "behind"].map(|run| middle(&recorded(&out, run)));
+        // Three diameters before a rotor the wind is half a percent slower than the file's.
         assert!((of_file[0] - 9.0).abs() < 0.1 && (of_file[1] - 0.707).abs() < 0.1, "{of_file:?}");
         // The wake of a rotor at its best takes about half of the wind; gusts go on through it.
         assert!((3.0..7.0).contains(&behind[0]) && behind[1] > 0.3, "{name}: {behind:?}");
-        power(&outs[0])
+        power(&out)
     });
     let [full_field, others @ ..] = made;
     let mean = analysis::statistics::mean(&full_field);
@@ -144,9 +144,9 @@ fn files_of_wind_of_each_format_blow_alike() {
 fn turbulence_of_manns_model_reaches_rotor_and_wake() {
     let found = [1, 2].map(|seed| {
         let folder = written("");
-        let out = made(folder.path(), &format!("seed = {seed}"), "vortex");
+        let out = made(folder.path(), &format!("seed = {seed}"));
         let [of_wind, behind] = ["free", "behind"].map(|run| middle(&recorded(&out, run)));
-        assert!((of_wind[0] - 9.0).abs() < 1.0 && of_wind[1] > 0.1, "{of_wind:?}");
+        assert!((of_wind[0] - 9.0).abs() < 2.0 && of_wind[1] > 0.1, "{of_wind:?}");
         assert!(behind[0] < 0.8 * of_wind[0], "{behind:?} in {of_wind:?}");
         power(&out)
     });
