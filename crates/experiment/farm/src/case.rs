@@ -180,7 +180,8 @@ pub struct Placement {
     /// Path to a ROSCO input file (DISCON.IN) with the constants of its controller; the model's own when
     /// absent.
     pub discon: Option<String>,
-    /// Torque over rotor speed squared below rated (N m s²), on the rotor's side; the model's own when absent.
+    /// Torque over rotor speed squared below rated (N m s²), on the rotor's side; the model's own when
+    /// absent.
     pub torque_gain: Option<f64>,
     /// Foot of the tower on the map.
     pub position: Position,
