@@ -52,10 +52,22 @@ impl PlaneGrid {
     /// The rows below and above `height` (m), and the share that the upper one has there (–); beyond the rows
     /// the nearest one alone.
     pub fn rows_at(&self, height: f64) -> ([usize; 2], f64) {
-        let highest = self.n_z - 1;
-        let place = ((height - self.first[1]) / self.spacing[1]).clamp(0.0, highest as f64);
-        let row = place.floor() as usize;
-        ([row, (row + 1).min(highest)], place.fract())
+        self.between(1, self.n_z, height)
+    }
+
+    /// The columns to the right and to the left of `y` (m), and the share that the left one has there (–);
+    /// beyond the columns the nearest one alone.
+    pub fn columns_at(&self, y: f64) -> ([usize; 2], f64) {
+        self.between(0, self.n_y, y)
+    }
+
+    /// The two of the `n` points along `axis` (y, z) between which `place` (m) lies, and the share of the
+    /// second.
+    fn between(&self, axis: usize, n: usize, place: f64) -> ([usize; 2], f64) {
+        let last = n - 1;
+        let index = ((place - self.first[axis]) / self.spacing[axis]).clamp(0.0, last as f64);
+        let before = index.floor() as usize;
+        ([before, (before + 1).min(last)], index.fract())
     }
 
     /// Time (s) from the first plane to the last, or until the first returns.

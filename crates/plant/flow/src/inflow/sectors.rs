@@ -131,20 +131,13 @@ fn mean_over(grid: &PlaneGrid, disc: Disc, quarter: usize, field: &[f64]) -> f64
 }
 
 /// `field` at `place` along y and z (m), bilinear; beyond the points that of the nearest.
-fn at(grid: &PlaneGrid, field: &[f64], place: [f64; 2]) -> f64 {
-    let n = [grid.n_y, grid.n_z];
-    let found: [(usize, usize, f64); 2] = std::array::from_fn(|axis| {
-        let index = (place[axis] - grid.first[axis]) / grid.spacing[axis];
-        let index = index.clamp(0.0, (n[axis] - 1) as f64);
-        let before = index.floor() as usize;
-        (before, (before + 1).min(n[axis] - 1), index.fract())
-    });
-    let [(right, left, aside), (low, high, above)] = found;
+fn at(grid: &PlaneGrid, field: &[f64], [y, z]: [f64; 2]) -> f64 {
+    let ((columns, aside), (rows, above)) = (grid.columns_at(y), grid.rows_at(z));
     let along = |row: usize| {
-        let [a, b] = [right, left].map(|column| field[row * grid.n_y + column]);
+        let [a, b] = columns.map(|column| field[row * grid.n_y + column]);
         a + aside * (b - a)
     };
-    let (below, over) = (along(low), along(high));
+    let [below, over] = rows.map(along);
     below + above * (over - below)
 }
 
