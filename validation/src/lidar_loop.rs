@@ -19,6 +19,8 @@ const OWN: &str = "this program's claim: the source gives no figure";
 
 /// Time from which the record counts (s): the helix has faded in and its wake has passed the lidar.
 const FROM: f64 = 130.0;
+/// Samples of the record for one of the model: two seconds.
+const DECIMATE: usize = 20;
 /// The source's bandwidth (rad/s).
 const BANDWIDTH: f64 = 0.02;
 /// The source's weights, its Eqs. 11 and 12.
@@ -37,8 +39,8 @@ fn made() -> Result<Vec<Row>, String> {
     let (_, folder) =
         summaries(Carried::Shipped("lidar-identification"), "lidar-loop-record", Vec::new())?;
     // The source has its delay from the zeros of a model that was told none.
-    let alone = identified(&folder, 0.0, 10)?;
-    let found = identified(&folder, 16.0, 8)?;
+    let alone = identified(&folder, DECIMATE, 0.0, 10)?;
+    let found = identified(&folder, DECIMATE, 16.0, 8)?;
     let designed = designed(&folder, &found)?;
     let case = Carried::Own(include_str!("../cases/lidar-loop.toml"));
     let (runs, _) = summaries(case, "lidar-loop", Vec::new())?;
@@ -49,8 +51,13 @@ fn made() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// A model of the record in `folder`, samples two seconds apart, its outputs `delay` (s) late.
-fn identified(folder: &Path, delay: f64, order: usize) -> Result<Identified, String> {
+/// A model of the record in `folder`, every `decimate`th sample, its outputs `delay` (s) late.
+pub(crate) fn identified(
+    folder: &Path,
+    decimate: usize,
+    delay: f64,
+    order: usize,
+) -> Result<Identified, String> {
     let of = |what: &str| ["Tilt", "Yaw"].map(|axis| format!("T1.{what}{axis}")).to_vec();
     let question = IdentifyQuestion {
         source: Source {
@@ -59,7 +66,7 @@ fn identified(folder: &Path, delay: f64, order: usize) -> Result<Identified, Str
             outputs: of("HubVortex"),
             span: [FROM, f64::INFINITY],
         },
-        decimate: 20,
+        decimate,
         trend: Trend::Constant,
         windows: [15, 15],
         feedthrough: false,
@@ -72,7 +79,7 @@ fn identified(folder: &Path, delay: f64, order: usize) -> Result<Identified, Str
 }
 
 /// A controller for the model that was `found`, written into `folder` for the loop.
-fn designed(folder: &Path, found: &Identified) -> Result<Synthesized, String> {
+pub(crate) fn designed(folder: &Path, found: &Identified) -> Result<Synthesized, String> {
     let (model, weights) = (folder.join("model.json"), folder.join("weights.toml"));
     found.model.write(&model).map_err(|error| error.to_string())?;
     fs::write(&weights, WEIGHTS)

@@ -340,6 +340,8 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     loops::TIMES,
     loops::LIDAR_LOOP,
+    loops::LIDAR_LATTICE,
+    loops::PHASE_PREVIEW,
     Validation {
         name: "synthesis",
         about: "H-infinity controllers of ten plants beside SLICOT's, and beside what no controller can do better",

@@ -9,11 +9,13 @@
 mod choices;
 mod forms;
 mod on_and_off;
+mod preview;
 mod rig;
 mod robustness;
 mod side_by_side;
 mod wind;
 
+pub use preview::phase_preview;
 pub use side_by_side::estimators;
 
 use crate::Row;

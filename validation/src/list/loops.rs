@@ -1,6 +1,6 @@
 //! Validations of the loop that a lidar closes, and of how long its desk work takes.
 
-use crate::{Cost, Validation, control_times, lidar_loop};
+use crate::{Cost, Validation, control_times, lidar_loop, lidar_table, phase_estimator};
 
 pub(super) const TIMES: Validation = Validation {
     name: "control-times",
@@ -20,4 +20,24 @@ pub(super) const LIDAR_LOOP: Validation = Validation {
     pictures: None,
     page: "control-design",
     recorded: include_str!("../../recorded/lidar-loop.toml"),
+};
+
+pub(super) const LIDAR_LATTICE: Validation = Validation {
+    name: "lidar-lattice",
+    about: "the lidar's loop in resolved flow: a law of its own record, power and blade loads of two turbines in four winds by the closed over the open loop, beside a published table",
+    cost: Cost::Minutes(12),
+    run: lidar_table::lidar_lattice,
+    pictures: None,
+    page: "control-design",
+    recorded: include_str!("../../recorded/lidar-lattice.toml"),
+};
+
+pub(super) const PHASE_PREVIEW: Validation = Validation {
+    name: "phase-preview",
+    about: "the helix's phase at the second of two turbines in resolved flow, by blade loads and through a lidar that looks upwind",
+    cost: Cost::Minutes(15),
+    run: phase_estimator::phase_preview,
+    pictures: None,
+    page: "phase-estimator",
+    recorded: include_str!("../../recorded/phase-preview.toml"),
 };

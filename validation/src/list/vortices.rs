@@ -65,7 +65,7 @@ pub(super) const AMPLITUDE: Validation = Validation {
 pub(super) const OPEN_LOOP: Validation = Validation {
     name: "free-vortex-open-loop",
     about: "power and blade loads of two turbines with free wakes and a helix in even, sheared and turbulent wind, beside a published study",
-    cost: Cost::Minutes(40),
+    cost: Cost::Minutes(70),
     run: free_vortex::free_vortex_open_loop,
     pictures: None,
     page: "free-vortex",
