@@ -12,7 +12,8 @@ use crate::studies::{Carried, failure, summaries};
 
 /// Where the expected signs come from. It has one seed, and gives no interval.
 const SOURCE: &str = "Chen, van Vondelen, van Wingerden (2026), table 5";
-/// Published changes that are taken for none (%): section 4.3.2 calls what is smaller "nearly unchanged".
+/// Published changes below this are taken for none (%), this program's choice: section 4.3.2 calls the smallest
+/// "nearly unchanged".
 const NONE: f64 = 0.5;
 /// Its changes from open to closed loop (%): by wind from the sheared one on, by quantity, of T1, T2 and
 /// both.
