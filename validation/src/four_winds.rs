@@ -23,19 +23,13 @@ pub(crate) struct Farm {
     case: Carried,
     /// Name of its folders, before the seed.
     name: &'static str,
-    /// What the flow is, in rows.
-    pub(crate) flow: &'static str,
 }
 
 /// In free vortices, as the study has them.
-pub(crate) const FREE: Farm =
-    Farm { case: Carried::Shipped("lidar-closed-loop"), name: "lidar", flow: "free vortices" };
+pub(crate) const FREE: Farm = Farm { case: Carried::Shipped("lidar-closed-loop"), name: "lidar" };
 /// In resolved flow.
-pub(crate) const RESOLVED: Farm = Farm {
-    case: Carried::Own(include_str!("../cases/lidar-lattice.toml")),
-    name: "lidar-lattice",
-    flow: "resolved flow, 16 cells a diameter",
-};
+pub(crate) const RESOLVED: Farm =
+    Farm { case: Carried::Own(include_str!("../cases/lidar-lattice.toml")), name: "lidar-lattice" };
 
 /// A wind of the study.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,12 +80,34 @@ pub(crate) struct Change {
 
 /// Changes of a quantity: of each turbine, and of both together.
 pub(crate) type Changes = [Change; N_TURBINES + 1];
+/// Changes of all [`QUANTITIES`].
+pub(crate) type AllChanges = [Changes; QUANTITIES.len()];
 
 impl Farm {
+    /// What `of` finds in each wind with each of `seeds`, given the folder with these `runs`: all winds with
+    /// the first seed, else those that it changes.
+    pub(crate) fn of_winds(
+        &self,
+        seeds: &[u64],
+        runs: &[&str],
+        mut of: impl FnMut(&Path, FarmWind, u64) -> Result<AllChanges, String>,
+    ) -> Result<[Vec<AllChanges>; WINDS.len()], String> {
+        let mut of_winds: [Vec<_>; WINDS.len()] = Default::default();
+        for &seed in seeds {
+            let folder = self.folder(seed, runs)?;
+            for (wind, of_seeds) in WINDS.into_iter().zip(&mut of_winds) {
+                if wind.has_seeds() || seed == FIRST_SEED {
+                    of_seeds.push(of(&folder, wind, seed)?);
+                }
+            }
+        }
+        Ok(of_winds)
+    }
+
     /// Makes these `runs` with a `seed`, or takes up what is there of them, and gives their folder: all winds
     /// with the first seed, else those that it changes. Validations share the folders: each makes the runs
     /// that it wants.
-    pub(crate) fn folder(&self, seed: u64, runs: &[&str]) -> Result<PathBuf, String> {
+    fn folder(&self, seed: u64, runs: &[&str]) -> Result<PathBuf, String> {
         let name = |seed: u64| format!("{}-{seed}", self.name);
         // From the current folder, for the case itself may stand elsewhere.
         let here = std::env::current_dir().map_err(|error| error.to_string())?;
@@ -119,10 +135,7 @@ pub(crate) fn series_of(folder: &Path, wind: FarmWind, run: &str) -> Result<Seri
 }
 
 /// How all [`QUANTITIES`] change from `before` to `now`.
-pub(crate) fn all_changes(
-    now: &Series,
-    before: &Series,
-) -> Result<[Changes; QUANTITIES.len()], String> {
+pub(crate) fn all_changes(now: &Series, before: &Series) -> Result<AllChanges, String> {
     let mut all = [Changes::default(); QUANTITIES.len()];
     for ((_, channel, is_load), found) in QUANTITIES.into_iter().zip(&mut all) {
         *found = changes(channel, is_load, now, before)?;
@@ -132,9 +145,7 @@ pub(crate) fn all_changes(
 
 /// What the changes `of_seeds` are together: their mean, with an interval from how they differ; those of one
 /// seed alone are its own.
-pub(crate) fn together(
-    of_seeds: &[[Changes; QUANTITIES.len()]],
-) -> Result<[Changes; QUANTITIES.len()], String> {
+pub(crate) fn together(of_seeds: &[AllChanges]) -> Result<AllChanges, String> {
     let mut all = [Changes::default(); QUANTITIES.len()];
     for (quantity, found) in all.iter_mut().enumerate() {
         let of_quantity: Vec<Changes> = of_seeds.iter().map(|changes| changes[quantity]).collect();
@@ -145,10 +156,7 @@ pub(crate) fn together(
 
 /// `changes` over one run that all seeds share, whose own scatter no seed tells of: intervals with that of
 /// the blocks of `shared`.
-pub(crate) fn over_shared(
-    mut changes: [Changes; QUANTITIES.len()],
-    shared: &Series,
-) -> Result<[Changes; QUANTITIES.len()], String> {
+pub(crate) fn over_shared(mut changes: AllChanges, shared: &Series) -> Result<AllChanges, String> {
     for ((_, channel, is_load), changes) in QUANTITIES.into_iter().zip(&mut changes) {
         let scatter = scatter_of(channel, is_load, shared)?;
         for (change, scatter) in changes.iter_mut().zip(scatter) {
@@ -159,7 +167,7 @@ pub(crate) fn over_shared(
 }
 
 /// Prints `changes` of all quantities in what `words` name.
-pub(crate) fn print_changes(words: &str, changes: &[Changes; QUANTITIES.len()]) {
+pub(crate) fn print_changes(words: &str, changes: &AllChanges) {
     for ((quantity, ..), changes) in QUANTITIES.into_iter().zip(changes) {
         let [first, second, both] =
             changes.map(|Change { mean, half_width }| format!("{mean:+.2} ± {half_width:.2} %"));

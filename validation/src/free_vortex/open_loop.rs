@@ -43,19 +43,12 @@ pub(super) fn rows() -> Vec<Row> {
 
 fn made() -> Result<Vec<Row>, String> {
     let mut even = None;
-    let mut of_winds: [Vec<_>; WINDS.len()] = Default::default();
-    for seed in SEEDS {
-        let folder = FREE.folder(seed, &[OPEN])?;
-        for (wind, of_seeds) in WINDS.into_iter().zip(&mut of_winds) {
-            if !wind.has_seeds() && seed != FIRST_SEED {
-                continue;
-            }
-            let now = series_of(&folder, wind, OPEN)?;
-            let changes = all_changes(&now, even.get_or_insert_with(|| now.clone()))?;
-            print_changes(&format!("OL{} over OL1, seed {seed}", wind.number), &changes);
-            of_seeds.push(changes);
-        }
-    }
+    let of_winds = FREE.of_winds(&SEEDS, &[OPEN], |folder, wind, seed| {
+        let now = series_of(folder, wind, OPEN)?;
+        let changes = all_changes(&now, even.get_or_insert_with(|| now.clone()))?;
+        print_changes(&format!("OL{} over OL1, seed {seed}", wind.number), &changes);
+        Ok(changes)
+    })?;
     let mut all = Vec::new();
     for (wind, of_seeds) in WINDS.into_iter().zip(&of_winds) {
         let mut changes = together(of_seeds)?;
