@@ -95,7 +95,8 @@ pub struct PhaseAnswer {
     pub block: f64,
     /// Times that count (s).
     pub times: Vec<f64>,
-    /// Mean estimated and true wind over the disc (m/s).
+    /// Mean estimated and true wind over the radial lines (m/s), which weigh the middle of the disc more than
+    /// its area does.
     pub mean_winds: [f64; 2],
     /// Estimated wind over the disc at each time (m/s).
     pub wind: Vec<f64>,

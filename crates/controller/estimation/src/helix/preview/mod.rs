@@ -1,19 +1,22 @@
 //! The helix ahead of its arrival: its phase from the scans of a lidar that looks upwind.
 //!
-//! What a lidar sees `s` ahead of the rotor meets it a time of travel later (Taylor's frozen turbulence), so
-//! that the wind of half a period before and half a period after an instant is known at that instant. Least
-//! squares over that whole period ([`window`]) have no lag, where a filter over loads, which knows the past
-//! alone, lags by its memory.
+//! What a lidar sees `s` ahead of the rotor is at its place a time of travel later (Taylor's frozen
+//! turbulence), so that the wind of half a period before and half a period after an instant is known at that
+//! instant. Least squares over that whole period ([`window`]) have no lag, where a filter over loads, which
+//! knows the past alone, lags by its memory.
 //!
-//! The time of travel follows from the speed over the scan itself: the mean over its points, brought to the
-//! free speed and back along the way by the slowing ahead of a rotor of the given induction ([`travel`]),
-//! smoothed over a period. An error of a percent in that speed turns the phase by a percent of the time of
-//! travel: 1.8° where half a period is looked ahead.
+//! The helix is that of the wind at the rotor's place without the rotor, against which estimates are judged;
+//! air that the rotor slows comes later by some degrees, which is left out. So the time of travel is the
+//! distance over the free speed. That is the mean over the scan's points, each with the square of its
+//! distance from the axis, as which a slope in the wind weighs it, for it is the slopes that are carried;
+//! brought to the free speed where a rotor of the given induction slows the air at the scan ([`slowing`]);
+//! smoothed over a period. An error of a percent in that speed turns
+//! the phase by a percent of the time of travel: 1.8° where half a period is looked ahead.
 //!
 //! What is not known is taken as it is best: lines of sight as if they came from the rotor's centre (a lidar
 //! a few metres behind it sees everything a percent too strong), winds across the line of sight as none.
 
-mod travel;
+mod slowing;
 mod window;
 
 use super::estimate::HelixEstimate;
@@ -49,7 +52,7 @@ pub struct PreviewSettings {
     pub rate: f64,
     /// Radius of the rotor (m).
     pub radius: f64,
-    /// Speed at which the helix travels over the mean over the scan (–).
+    /// Speed at which the helix travels over the free one that the scan shows (–).
     pub speed_factor: f64,
 }
 
@@ -66,9 +69,9 @@ pub struct PreviewState {
     slots: Slots,
     /// Time of the newest point that was used (s), and how long its air takes to the rotor (s).
     newest: Option<[f64; 2]>,
-    /// Free speed of the wind over the scan (m/s), smoothed, and how much of its memory is filled (–).
-    speed: f64,
-    memory: f64,
+    /// Sums over the points seen, older ones fading over a period: of squared distances from the axis (in
+    /// radii) times free speeds (m/s), and of the former alone.
+    speeds: [f64; 2],
     steadiness: Steadiness,
 }
 
@@ -137,8 +140,7 @@ impl PreviewEstimator {
         let state = PreviewState {
             slots: Slots::empty(),
             newest: None,
-            speed: 0.0,
-            memory: 0.0,
+            speeds: [0.0; 2],
             steadiness: Steadiness::default(),
         };
         Ok(Self { settings, state })
@@ -155,9 +157,10 @@ impl PreviewEstimator {
         0.5 * speed * self.period()
     }
 
-    /// Free speed of the wind over the scan (m/s); none before it was seen.
+    /// Free speed of the wind that carries the helix (m/s); none before it was seen.
     pub fn speed(&self) -> Option<f64> {
-        (self.state.memory > 0.0).then_some(self.state.speed)
+        let [weighted, weights] = self.state.speeds;
+        (weights > 0.0).then(|| weighted / weights)
     }
 
     /// Takes in what of `scan` was measured since the last one, if there is a scan, and gives the helix at
@@ -176,41 +179,43 @@ impl PreviewEstimator {
     }
 
     fn take_in(&mut self, interval: f64, scan: &Scan, induction: f64) {
-        let Self { settings, state } = self;
-        let PreviewSettings { radius, rate, speed_factor, .. } = *settings;
+        let PreviewSettings { radius, rate, speed_factor, .. } = self.settings;
         let period = TAU / rate;
-        let [before, _] = state.newest.unwrap_or([f64::NEG_INFINITY; 2]);
+        let [before, _] = self.state.newest.unwrap_or([f64::NEG_INFINITY; 2]);
         let points = (0..scan.n_points()).filter_map(|index| point(scan, index));
         let fresh = points.filter(|point| point.time > before);
-        let (mut sum, mut n, mut newest) = (0.0, 0.0, before);
+        let (mut speeds, mut newest) = ([0.0; 2], before);
         for point in fresh.clone() {
-            sum += point.wind / travel::speed_share(point.upstream, radius, induction);
-            n += 1.0;
+            let weight = (point.up * point.up + point.right * point.right) / (radius * radius);
+            let free = point.wind / slowing::speed_share(point.upstream, radius, induction);
+            speeds[0] += weight * free;
+            speeds[1] += weight;
             newest = newest.max(point.time);
         }
-        if n == 0.0 {
+        if newest == before {
             return;
         }
-        let mean = sum / n;
-        // All that was seen counts alike until the memory is filled.
         let passed = if before.is_finite() { newest - before } else { interval };
-        let share = 1.0 - kept(passed, period);
-        state.memory += share * (1.0 - state.memory);
-        state.speed += share / state.memory * (mean - state.speed);
-        let carried = (speed_factor * state.speed).max(SLOWEST);
+        let kept = kept(passed, period);
+        for (sum, new) in self.state.speeds.iter_mut().zip(speeds) {
+            *sum = kept * *sum + new;
+        }
+        let Some(speed) = self.speed() else { return };
+        let carried = (speed_factor * speed).max(SLOWEST);
         let slot = period / N_SLOTS as f64;
         let mut furthest = 0.0_f64;
         for point in fresh {
-            let ahead = travel::free_way(point.upstream, radius, induction) / carried;
+            let ahead = point.upstream / carried;
             if ahead > LONGEST * period {
                 continue;
             }
             let arrival = point.time + ahead;
             let number = (arrival / slot).floor() as i64;
-            state.slots.add(number, &factors(&point, arrival, settings), point.wind);
+            let factors = factors(&point, arrival, &self.settings);
+            self.state.slots.add(number, &factors, point.wind);
             furthest = furthest.max(ahead);
         }
-        state.newest = Some([newest, furthest]);
+        self.state.newest = Some([newest, furthest]);
     }
 
     fn estimate(&mut self, time: f64, interval: f64) -> PreviewEstimate {
@@ -244,7 +249,7 @@ impl PreviewEstimator {
     /// 2 S/T.
     fn axis(&self, fit: &Fit, axis: usize) -> Axis {
         let PreviewSettings { radius, rate, .. } = self.settings;
-        let lives = radius / self.state.speed.max(SLOWEST);
+        let lives = radius / self.speed().unwrap_or(SLOWEST).max(SLOWEST);
         let density = 2.0 * fit.left_over[axis] * lives / (1.0 + (rate * lives).powi(2));
         let variance = 2.0 * density / self.period();
         let [sine, cosine] = components(&fit.found, axis);
