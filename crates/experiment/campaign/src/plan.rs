@@ -2,7 +2,7 @@
 
 use crate::error::CampaignError;
 use crate::table::{Meta, Table, path_in};
-use crate::task::{self, Task, VERSION};
+use crate::task::{self, Task, Tasks, VERSION};
 use formats::atomic;
 use formats::case::{CampaignFile, Keep};
 use formats::{machine, records, shipped};
@@ -58,6 +58,8 @@ pub struct Plan {
     pub n_tasks: usize,
     /// Combinations of levels that are excluded (–).
     pub n_excluded: usize,
+    /// Tasks of the others that were not drawn (–).
+    pub n_undrawn: usize,
     /// Whether the folder held this plan before.
     pub was_there: bool,
     /// What it costs.
@@ -77,7 +79,7 @@ pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
     }
     let usual = Path::new("campaigns").join(&file.name);
     let folder = folder.unwrap_or(&usual).to_owned();
-    let (tasks, n_excluded) = task::all(&file)?;
+    let Tasks { tasks, n_excluded, n_undrawn } = task::all(&file)?;
     let hashes = task::hashes(&file, &tasks)?;
     check_distinct(&tasks, &hashes)?;
     let threads = threads(&file, &tasks[0])?;
@@ -102,7 +104,7 @@ pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
         levels: factor.levels.iter().map(|level| level.name.words()).collect(),
     };
     let factors = file.factors.iter().map(words).collect();
-    Ok(Plan { name: file.name, folder, factors, n_tasks, n_excluded, was_there, cost })
+    Ok(Plan { name: file.name, folder, factors, n_tasks, n_excluded, n_undrawn, was_there, cost })
 }
 
 /// The word of the campaign's file for `keep`.

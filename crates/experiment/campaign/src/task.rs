@@ -5,6 +5,7 @@ use basis::records::SweptValue;
 use formats::case::{CampaignFile, Exclusion, decisive_text};
 use formats::{records, shipped};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -37,11 +38,21 @@ impl Task {
     }
 }
 
-/// All tasks of `file`, and how many combinations are excluded (–); the last factor changes fastest.
+/// What the file of a campaign comes to.
+pub(crate) struct Tasks {
+    /// The tasks; the last factor changes fastest.
+    pub(crate) tasks: Vec<Task>,
+    /// Tasks that are excluded (–).
+    pub(crate) n_excluded: usize,
+    /// Tasks of the others that were not drawn (–).
+    pub(crate) n_undrawn: usize,
+}
+
+/// All tasks of `file`.
 ///
 /// # Errors
 /// [`CampaignError::NoTask`].
-pub(crate) fn all(file: &CampaignFile) -> Result<(Vec<Task>, usize), CampaignError> {
+pub(crate) fn all(file: &CampaignFile) -> Result<Tasks, CampaignError> {
     let mut tasks = vec![Task { columns: Vec::new(), overrides: Vec::new() }];
     for factor in &file.factors {
         let mut longer = Vec::with_capacity(tasks.len() * factor.levels.len());
@@ -67,7 +78,28 @@ pub(crate) fn all(file: &CampaignFile) -> Result<(Vec<Task>, usize), CampaignErr
         return Err(CampaignError::NoTask { path: file.path.clone() });
     }
     let n_excluded = n_combinations - tasks.len();
-    Ok((tasks, n_excluded))
+    let n_left = tasks.len();
+    if let Some(n_drawn) = file.draw {
+        draw(&mut tasks, n_drawn, &file.seed_key);
+    }
+    let n_undrawn = n_left - tasks.len();
+    Ok(Tasks { tasks, n_excluded, n_undrawn })
+}
+
+/// Leaves `n_drawn` combinations in `tasks`, those that have the least hashes, each with all its seeds: so by
+/// chance, and the same each time; of a larger draw, those of a smaller one are a part.
+fn draw(tasks: &mut Vec<Task>, n_drawn: usize, seed_key: &str) {
+    let hash = |task: &Task| {
+        let combination = task.columns.iter().filter(|(name, _)| name != seed_key);
+        let words: Vec<String> =
+            combination.map(|(name, value)| format!("{name} = {}", value.words())).collect();
+        records::sha256(words.join("\n").as_bytes())
+    };
+    let hashes: Vec<String> = tasks.iter().map(hash).collect();
+    let all: BTreeSet<&String> = hashes.iter().collect();
+    let drawn: BTreeSet<&String> = all.into_iter().take(n_drawn).collect();
+    let mut hashes = hashes.iter();
+    tasks.retain(|_| hashes.next().is_some_and(|hash| drawn.contains(hash)));
 }
 
 /// SHA-256 of what decides the results of `task` of the case at `case`: the case with the task's levels, the

@@ -262,6 +262,10 @@ pub fn farm(
         let settings = turbine_settings(case, plan, model, index, tower);
         let turbine = Turbine::new(Arc::clone(&model.definition), foot, settings)?;
         let turbine = turbine.misaligned(misalignment(placement, model)?);
+        let turbine = match placement.structure_step {
+            Some(step) => turbine.with_structural_steps(step),
+            None => turbine,
+        };
         let turbine = in_air_of(solver, turbine);
         let control = controller(&run.control[index], model, case, plan)?;
         let sensing = sensing(case, plan, model, index)?;

@@ -192,6 +192,8 @@ pub struct Placement {
     pub pitch_misalignment: Vec<f64>,
     /// Whether blades, tower and drive train bend.
     pub flexible: bool,
+    /// Longest step of the structure (s); that of the turbine when absent.
+    pub structure_step: Option<f64>,
     /// Whether flow about the blades' sections separates with delay; otherwise their polars hold at once.
     pub dynamic_stall: bool,
     /// How its induction follows its loads, where the wind is prescribed.

@@ -2,6 +2,7 @@
 
 use crate::turbine_file::{self, TurbineFile, TurbineFileError};
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Name and file of each turbine.
 const TURBINES: [(&str, &str); 4] = [
@@ -26,8 +27,8 @@ pub fn text(name: &str) -> Option<&'static str> {
 /// # Errors
 /// [`TurbineFileError`] when there is neither, or the file does not hold a turbine.
 pub fn load(name: &str) -> Result<TurbineFile, TurbineFileError> {
-    if let Some(text) = text(name) {
-        return turbine_file::parse(&format!("turbines/{name}.toml"), text);
+    if let Some(index) = TURBINES.iter().position(|(known, _)| *known == name) {
+        return shipped(index);
     }
     let path = Path::new(name);
     if path.exists() || path.extension().is_some() || name.contains(std::path::MAIN_SEPARATOR) {
@@ -36,6 +37,18 @@ pub fn load(name: &str) -> Result<TurbineFile, TurbineFileError> {
     let known: Vec<&str> = names().collect();
     let fix = format!("known are {}; or give the path of a turbine file", known.join(", "));
     Err(TurbineFileError::Unknown { name: name.to_owned(), fix })
+}
+
+/// Turbine number `index` of [`TURBINES`], parsed once: a campaign asks for it thousands of times.
+fn shipped(index: usize) -> Result<TurbineFile, TurbineFileError> {
+    static PARSED: [OnceLock<TurbineFile>; TURBINES.len()] =
+        [const { OnceLock::new() }; TURBINES.len()];
+    if let Some(parsed) = PARSED[index].get() {
+        return Ok(parsed.clone());
+    }
+    let (name, text) = TURBINES[index];
+    let parsed = turbine_file::parse(&format!("turbines/{name}.toml"), text)?;
+    Ok(PARSED[index].get_or_init(|| parsed).clone())
 }
 
 #[cfg(test)]

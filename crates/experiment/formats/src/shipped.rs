@@ -134,7 +134,13 @@ pub const CASES: &[ShippedCase] = &[
     ShippedCase {
         name: "wake-slices",
         file: include_str!("../../../../cases/wake-slices.toml"),
-        minutes: 4.0,
+        minutes: 10.0,
+        after: None,
+    },
+    ShippedCase {
+        name: "wake-slices-array",
+        file: include_str!("../../../../cases/wake-slices-array.toml"),
+        minutes: 15.0,
         after: None,
     },
     ShippedCase {

@@ -8,7 +8,7 @@ use crate::loading::{Loading, excess};
 use crate::rotor::Frame;
 use basis::Vector3;
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Sweeps of the lifting-line fixed point per step (–); each step starts from the last result, so few
 /// suffice.
@@ -24,7 +24,11 @@ const UNIFORM_SHARE: f64 = 0.5;
 pub struct ActuatorLine {
     air_density: f64,
     elements: Vec<Element>,
-    correction: SmearingCorrection,
+    span: Span,
+    /// Smearing of a wind sample: that of the forces and of the interpolation (m).
+    seen_width: f64,
+    /// Made where it is used: it takes a fraction of a second.
+    correction: OnceLock<SmearingCorrection>,
     loading: Loading,
     definition: Arc<Definition>,
 }
@@ -181,9 +185,16 @@ impl ActuatorLine {
             cores: borders.iter().map(core).collect(),
         };
         let seen_width = smearing_length.hypot(sample_spacing / 3.0_f64.sqrt());
-        let correction = SmearingCorrection::new(definition.n_blades, &span, seen_width);
         let loading = Loading::new(&span.centres, seen_width);
-        Self { air_density, elements, correction, loading, definition }
+        let correction = OnceLock::new();
+        Self { air_density, elements, span, seen_width, correction, loading, definition }
+    }
+
+    /// The smearing correction, made at the first call: call it once before time begins.
+    pub fn correction(&self) -> &SmearingCorrection {
+        let make =
+            || SmearingCorrection::new(self.definition.n_blades, &self.span, self.seen_width);
+        self.correction.get_or_init(make)
     }
 
     /// Elements of each blade, root to tip.
@@ -211,7 +222,8 @@ impl ActuatorLine {
     ) {
         let n = self.elements.len();
         let carried = self.mean_wind(onsets);
-        let helix = self.correction.helix(carried / rotor_speed.max(1e-3));
+        let correction = self.correction();
+        let helix = correction.helix(carried / rotor_speed.max(1e-3));
         for sweep in 0..=N_SWEEPS {
             self.loads_under(onsets, pitch, sections, corrections, loads);
             for (circulation, load) in scratch.circulations.iter_mut().zip(&*loads) {
@@ -222,7 +234,7 @@ impl ActuatorLine {
             }
             self.nonlinear_part(onsets, carried, scratch);
             for (index, corrections) in corrections.iter_mut().enumerate() {
-                let (axial, tangential) = self.correction.velocity_correction(
+                let (axial, tangential) = correction.velocity_correction(
                     helix,
                     index / n,
                     index % n,

@@ -53,6 +53,8 @@ pub struct Turbine {
     frame: Frame,
     air_density: f64,
     smearing_length: f64,
+    /// Longest step of the structure (s).
+    longest_step: f64,
     /// By how much each blade's pitch is mounted wrong (rad).
     misalignment: PerBlade<f64>,
     state: TurbineState,
@@ -104,6 +106,7 @@ impl Turbine {
         let state = TurbineState::at_start(structure.state().clone(), aerodynamics.start(), plate);
         let n_points = definition.n_blades * N_ELEMENTS;
         let mut turbine = Self {
+            longest_step: longest_step(&definition),
             misalignment: PerBlade::splat(definition.n_blades, 0.0),
             workspace: Workspace::new(n_points, bodies.len(), frame.blade(0.0, 0.0)),
             held: if settings.flexible { Vec::new() } else { all_but_the_generator() },
@@ -168,6 +171,13 @@ impl Turbine {
         &self.workspace.stations
     }
 
+    /// The same, whose structure takes steps of at most `step` (s) in place of
+    /// [`LONGEST_STRUCTURAL_STEP`]: shorter ones, or longer ones that cost less and follow the fast modes
+    /// less well. They are never longer than the intervals in which it is advanced.
+    pub fn with_structural_steps(self, step: f64) -> Self {
+        Self { longest_step: step, ..self }
+    }
+
     /// Advances the turbine by `interval` (s) under constant `commands`.
     ///
     /// `winds` (m/s) holds the wind at each of [`Turbine::stations`] now, the rotor's induction included as
@@ -187,7 +197,7 @@ impl Turbine {
         answer: Option<Answer<'_>>,
         commands: &Commands,
     ) {
-        let n_steps = (interval / longest_step(&self.definition) - 1e-9).ceil().max(1.0) as usize;
+        let n_steps = (interval / self.longest_step - 1e-9).ceil().max(1.0) as usize;
         let step = interval / n_steps as f64;
         // A generator holds the rotor back and never drives it backwards.
         let turning = self.structure.generator_speed() > 0.0;
@@ -345,27 +355,30 @@ impl Turbine {
         self.place_stations();
     }
 
-    /// On return the workspace's motions, stations and their axes are those of now.
-    fn place_stations(&mut self) {
-        let pitch = PerBlade::from_fn(self.state.pitch.len(), |blade| Pitch {
+    /// How the blades are pitched now, errors of their mounting included.
+    fn pitch_now(&self) -> PerBlade<Pitch> {
+        PerBlade::from_fn(self.state.pitch.len(), |blade| Pitch {
             angle: self.state.pitch[blade].pitch + self.misalignment[blade],
             rate: self.state.pitch[blade].rate,
             acceleration: 0.0,
-        });
+        })
+    }
+
+    /// On return the workspace's stations and their axes are those of now.
+    fn place_stations(&mut self) {
+        let pitch = self.pitch_now();
         let (frame, drag) = self.facing.turned(self.state.nacelle.angle);
         self.frame = frame;
         if let Some(nacelle) = self.bodies.last_mut() {
             nacelle.position = drag;
         }
         self.structure.turn(self.state.nacelle.now());
-        let Workspace { stations, axes, motions, .. } = &mut self.workspace;
-        self.structure.observe(0.0, &pitch, motions);
-        for (axes, motion) in axes.iter_mut().zip(&*motions) {
-            *axes = motion.axes;
+        let Workspace { stations, axes, .. } = &mut self.workspace;
+        let (elements, bodies) = stations.split_at_mut(axes.len());
+        self.structure.place(&pitch, elements, axes);
+        for (station, body) in bodies.iter_mut().zip(&self.bodies) {
+            *station = body.position;
         }
-        stations.clear();
-        stations.extend(motions.iter().map(|motion| motion.position));
-        stations.extend(self.bodies.iter().map(|body| body.position));
     }
 }
 

@@ -20,6 +20,7 @@ fn case(positions: &[[f64; 2]]) -> Case {
         yaw: 0.0,
         pitch_misalignment: Vec::new(),
         flexible: true,
+        structure_step: None,
         dynamic_stall: false,
         dynamic_inflow: DynamicInflow::default(),
         tower_influence: TowerInfluence::None,

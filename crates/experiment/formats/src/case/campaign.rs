@@ -82,6 +82,8 @@ pub struct CampaignFile {
     pub seed_key: String,
     /// What is left out.
     pub excluded: Vec<Exclusion>,
+    /// Combinations of levels that are made, drawn by chance (–); all without one.
+    pub draw: Option<usize>,
     /// Runs of the case that are made; all when empty.
     pub runs: Vec<String>,
     /// What stays of a task.
@@ -168,6 +170,7 @@ fn read_entries(
         factors,
         seed_key,
         excluded,
+        draw: root.optional_whole("draw").map(|draw| draw as usize),
         runs: texts(&root, "runs", &findings),
         keep: match root.choice("keep") {
             "series" => Keep::Series,

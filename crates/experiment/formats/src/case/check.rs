@@ -99,6 +99,7 @@ fn turbines_of(root: &Section, solver: Solver) -> Vec<Placement> {
                 .map(|angle| angle.to_radians())
                 .collect(),
             flexible: section.choice("structure") != "rigid",
+            structure_step: section.optional_number("structure_step"),
             dynamic_stall: if section.has("stall") {
                 section.choice("stall") == "dynamic"
             } else {

@@ -196,6 +196,13 @@ pub(super) static TURBINE: Table = Table {
             "`flexible`: blades, tower and drive train bend. `rigid`: only the rotor turns.",
         ),
         key(
+            "structure_step",
+            from(0.001, 0.1),
+            "s",
+            Otherwise("0.025, less of a small and fast rotor"),
+            "Longest step of the structure; never longer than a step of the flow, which may be cut into several. Longer ones cost less and follow fast modes less well: 0.05 changes equivalent loads of a large turbine by about a percent (docs/validation/openfast.md).",
+        ),
+        key(
             "stall",
             Holds::Choice(&["dynamic", "steady"]),
             "",

@@ -58,6 +58,9 @@ fn write_turbine(text: &mut String, turbine: &Placement) -> std::fmt::Result {
     }
     let structure = if turbine.flexible { "flexible" } else { "rigid" };
     writeln!(text, "structure = \"{structure}\"")?;
+    if let Some(step) = turbine.structure_step {
+        writeln!(text, "structure_step = {step:?}")?;
+    }
     let stall = if turbine.dynamic_stall { "dynamic" } else { "steady" };
     writeln!(text, "stall = \"{stall}\"")?;
     text.push_str(&momentum_text(turbine));

@@ -56,7 +56,7 @@ pub use stations::{AppliedLoads, ElementLoad};
 
 use crate::definition::Definition;
 use crate::motion::ElementMotion;
-use crate::rotor::Frame;
+use crate::rotor::{BladeFrame, Frame};
 use basis::{Channel, PerBlade, Vector3};
 use coordinates::{GENERATOR, Locks, TORSION};
 use equations_of_motion::EquationsOfMotion;
@@ -232,6 +232,21 @@ impl Structure {
             let phase = self.state.phase().ahead(ahead);
             let motion = self.machine.motion(&phase.q, &phase.v, pitch);
             self.stations.observe(&self.machine, &motion, &phase.q, &phase.v, elements);
+        }
+    }
+
+    /// On return `positions` (m) and `axes` are those of the blade elements now, pitched by `pitch`, blade
+    /// after blade, farm frame.
+    ///
+    /// # Panics
+    /// When either does not hold `n_blades × n_elements` values.
+    pub fn place(&self, pitch: &[Pitch], positions: &mut [Vector3], axes: &mut [BladeFrame]) {
+        let n = self.machine.n_blades * self.stations.n_elements();
+        assert_eq!((positions.len(), axes.len()), (n, n), "one place for each blade element");
+        if n > 0 {
+            let phase = self.state.phase();
+            let motion = self.machine.motion(&phase.q, &phase.v, pitch);
+            self.stations.place(&self.machine, &motion, &phase.q, positions, axes);
         }
     }
 

@@ -20,23 +20,36 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// Axes and turn (rad) of a section that faces `facing` on a line along `span` (unit vectors).
+    /// Axes of a section on a line along `span` (unit vector).
     ///
     /// The element moves along `swept` (m) and its blade's unpitched axes are `cone`, all in the farm frame.
-    pub(super) fn of(
-        self,
-        span: Vector3,
-        facing: Vector3,
-        swept: Vector3,
-        cone: &Matrix3,
-    ) -> (BladeFrame, f64) {
+    #[inline(always)]
+    pub(super) fn axes(self, span: Vector3, swept: Vector3, cone: &Matrix3) -> BladeFrame {
         match self {
             Self::Swept => {
                 let normal = span.cross(swept).normalize();
-                let tangent = normal.cross(span);
-                let pitch = facing.dot(tangent).atan2(facing.dot(normal));
-                (BladeFrame { span, normal, tangent }, pitch)
+                BladeFrame { span, normal, tangent: normal.cross(span) }
             }
+            Self::Annular => {
+                let sine = cone.x_axis.dot(span);
+                let normal = *cone * Vector3::new((1.0 - sine * sine).sqrt(), 0.0, -sine);
+                let tangent = -cone.y_axis;
+                BladeFrame { span: tangent.cross(normal), normal, tangent }
+            }
+        }
+    }
+
+    /// Turn (rad) of a section with these `axes` that faces `facing` on a line along `span` (unit vectors).
+    #[inline(always)]
+    pub(super) fn turn(
+        self,
+        axes: &BladeFrame,
+        span: Vector3,
+        facing: Vector3,
+        cone: &Matrix3,
+    ) -> f64 {
+        match self {
+            Self::Swept => facing.dot(axes.tangent).atan2(facing.dot(axes.normal)),
             Self::Annular => {
                 let own_from_farm = cone.transpose();
                 let (span, facing) = (own_from_farm * span, own_from_farm * facing);
@@ -44,10 +57,7 @@ impl Projection {
                 let (sin_x, cos_x) = (-span.y / cos_y, span.z / cos_y);
                 let unturned = Vector3::new(cos_y, sin_x * span.x, -cos_x * span.x);
                 let beside = Vector3::new(0.0, cos_x, sin_x);
-                let normal = *cone * Vector3::new(cos_y, 0.0, -span.x);
-                let tangent = -cone.y_axis;
-                let pitch = -facing.dot(beside).atan2(facing.dot(unturned));
-                (BladeFrame { span: tangent.cross(normal), normal, tangent }, pitch)
+                -facing.dot(beside).atan2(facing.dot(unturned))
             }
         }
     }

@@ -7,6 +7,7 @@ use super::projection::Projection;
 use super::shapes::{Place, weighted};
 use crate::definition::{BladeStation, Definition};
 use crate::motion::ElementMotion;
+use crate::rotor::BladeFrame;
 use basis::Vector3;
 use basis::blades::MAXIMUM_BLADES;
 
@@ -148,9 +149,37 @@ impl Stations {
                 let first = turn.cross(station.across);
                 let facing = frame.axes * (station.across + first + 0.5 * turn.cross(first));
                 let swept = hub.axes.x_axis.cross(position - hub.origin);
-                let (axes, pitch) = self.projection.of(span, facing.normalize(), swept, &cone);
+                let axes = self.projection.axes(span, swept, &cone);
+                let pitch = self.projection.turn(&axes, span, facing, &cone);
                 let velocity = frame.velocity + frame.axes * velocity;
                 *element = ElementMotion { position, velocity, axes, pitch };
+            }
+        }
+    }
+
+    /// On return `positions` (m) and `axes` are those of the blade elements, blade after blade, farm frame:
+    /// what [`observe`](Self::observe) finds of them, without how they move and face.
+    pub(super) fn place(
+        &self,
+        machine: &Machine,
+        motion: &Motion,
+        q: &Coordinates,
+        positions: &mut [Vector3],
+        axes: &mut [BladeFrame],
+    ) {
+        let hub = &motion.hub;
+        let n = self.blade.len();
+        let blades = positions.chunks_exact_mut(n).zip(axes.chunks_exact_mut(n));
+        for (blade, (positions, axes)) in blades.enumerate() {
+            let frame = &motion.blades[blade];
+            let cone = machine.cone_axes(blade, motion);
+            let q = &q.blades[blade];
+            for ((position, axes), station) in positions.iter_mut().zip(axes).zip(&self.blade) {
+                let turn = station.place.turn(q);
+                let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
+                *position = frame.origin + frame.axes * station.place.at(q).0;
+                let swept = hub.axes.x_axis.cross(*position - hub.origin);
+                *axes = self.projection.axes(span, swept, &cone);
             }
         }
     }

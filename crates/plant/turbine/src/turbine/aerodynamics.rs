@@ -76,6 +76,10 @@ impl Aerodynamics {
                     Induction::ByBoundVortices { tower, .. } => (true, tower.clone()),
                     _ => (false, None),
                 };
+                if !answers {
+                    // Now, for no step is to wait for it.
+                    line.correction();
+                }
                 let memory = LineMemory {
                     onsets: vec![Onset::default(); n],
                     pitch: vec![0.0; n],

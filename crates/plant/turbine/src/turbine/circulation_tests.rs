@@ -8,6 +8,7 @@ use crate::aero::blade_element::Theory;
 use crate::aero::induction::TwoConstant;
 use crate::aero::rotor;
 use crate::aero::tower_influence::{Effects, Potential, TowerInfluence};
+use crate::motion::ElementMotion;
 use crate::rotor::BladeFrame;
 
 /// Short, so that blades stand where they stood when their wind was sampled.
@@ -22,7 +23,7 @@ fn after_an_instant(induction: Induction) -> (Turbine, Turbine, Vec<Vector3>) {
     let before = turbine.clone();
     let wind = Vector3::new(9.0, 0.5, 0.0);
     turbine.advance(INSTANT, &vec![wind; before.stations().len()], &commands(0.02));
-    let felt = before.workspace.motions.iter().enumerate().map(|(index, motion)| {
+    let felt = motions_now(&before).into_iter().enumerate().map(|(index, motion)| {
         let BladeFrame { normal, tangent, .. } = motion.axes;
         match &turbine.aerodynamics {
             Aerodynamics::Line(_) => {
@@ -38,6 +39,13 @@ fn after_an_instant(induction: Induction) -> (Turbine, Turbine, Vec<Vector3>) {
     });
     let felt = felt.collect();
     (turbine, before, felt)
+}
+
+/// How the blade elements of `turbine` move now.
+fn motions_now(turbine: &Turbine) -> Vec<ElementMotion> {
+    let mut motions = turbine.workspace.motions.clone();
+    turbine.structure.observe(0.0, &turbine.pitch_now(), &mut motions);
+    motions
 }
 
 fn obeys_kutta_joukowski(induction: Induction) {
@@ -206,7 +214,7 @@ fn answers_of_the_air_to_stalled_blades_stay_as_strong_as_the_wind_that_they_ans
     let turbine = built(false, by_flow(false));
     let line = &turbine.line;
     let n = line.elements().len() * turbine.definition().n_blades;
-    let motions = &turbine.workspace.motions;
+    let motions = &motions_now(&turbine);
     // An element feels its own trailing vortices most, as half a metre behind it, its neighbours less.
     let influence: Vec<Vector3> = (0..n * n)
         .map(|place| {

@@ -33,7 +33,7 @@ impl Workspace {
         let still =
             ElementMotion { position: Vector3::ZERO, velocity: Vector3::ZERO, axes, pitch: 0.0 };
         Self {
-            stations: Vec::with_capacity(n_points + n_bodies),
+            stations: vec![Vector3::ZERO; n_points + n_bodies],
             axes: vec![still.axes; n_points],
             motions: vec![still; n_points],
             loads: vec![ElementLoad::default(); n_points],

@@ -44,9 +44,13 @@ pub(super) fn planned(plan: &Plan) -> String {
         0 => String::new(),
         n => format!(", {n} combinations excluded"),
     };
+    let undrawn = match plan.n_undrawn {
+        0 => String::new(),
+        n => format!(", {n} others not drawn"),
+    };
     let there = if plan.was_there { "; the plan was there before" } else { "" };
     format!(
-        "{}{}: {} tasks{excluded}, in {}{there}\n{}",
+        "{}{}: {} tasks{excluded}{undrawn}, in {}{there}\n{}",
         table.fitted(columns()),
         plan.name,
         plan.n_tasks,

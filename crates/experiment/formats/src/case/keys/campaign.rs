@@ -72,6 +72,13 @@ pub(in crate::case) static CAMPAIGN: Table = Table {
             "Tasks that are left out: [[exclude]] with a value, or a list of them, for each of some keys or linked factors.",
         ),
         key(
+            "draw",
+            Holds::Whole { least: 1, most: 10_000_000 },
+            "–",
+            Otherwise("all"),
+            "So many combinations of levels alone, drawn by chance, always the same ones, each with all its seeds.",
+        ),
+        key(
             "runs",
             Holds::Sweep,
             "",
