@@ -39,8 +39,9 @@ fn made() -> Result<Vec<Row>, String> {
     let (_, folder) =
         summaries(Carried::Shipped("lidar-identification"), "lidar-loop-record", Vec::new())?;
     // The source has its delay from the zeros of a model that was told none.
-    let alone = identified(&folder, DECIMATE, 0.0, 10)?;
-    let found = identified(&folder, DECIMATE, 16.0, 8)?;
+    let asked = Asked { decimate: DECIMATE, delay: 16.0, order: 8 };
+    let alone = identified(&folder, Asked { delay: 0.0, order: 10, ..asked })?;
+    let found = identified(&folder, asked)?;
     let designed = designed(&folder, &found)?;
     let case = Carried::Own(include_str!("../cases/lidar-loop.toml"));
     let (runs, _) = summaries(case, "lidar-loop", Vec::new())?;
@@ -51,13 +52,20 @@ fn made() -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// A model of the record in `folder`, every `decimate`th sample, its outputs `delay` (s) late.
-pub(crate) fn identified(
-    folder: &Path,
-    decimate: usize,
-    delay: f64,
-    order: usize,
-) -> Result<Identified, String> {
+/// What is asked of a model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    /// Samples of the record for one of the model (–).
+    pub(crate) decimate: usize,
+    /// How late its outputs are (s).
+    pub(crate) delay: f64,
+    /// Its order (–).
+    pub(crate) order: usize,
+}
+
+/// A model of the record in `folder`, as `asked` for.
+pub(crate) fn identified(folder: &Path, asked: Asked) -> Result<Identified, String> {
+    let Asked { decimate, delay, order } = asked;
     let of = |what: &str| ["Tilt", "Yaw"].map(|axis| format!("T1.{what}{axis}")).to_vec();
     let question = IdentifyQuestion {
         source: Source {

@@ -340,7 +340,9 @@ pub const VALIDATIONS: &[Validation] = &[
     },
     loops::TIMES,
     loops::LIDAR_LOOP,
+    loops::LIDAR_TABLE,
     loops::LIDAR_LATTICE,
+    loops::LIDAR_FAMILY,
     loops::PHASE_PREVIEW,
     Validation {
         name: "synthesis",

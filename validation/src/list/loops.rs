@@ -1,6 +1,8 @@
 //! Validations of the loop that a lidar closes, and of how long its desk work takes.
 
-use crate::{Cost, Validation, control_times, lidar_loop, lidar_table, phase_estimator};
+use crate::{
+    Cost, Validation, control_times, lidar_family, lidar_loop, lidar_table, phase_estimator,
+};
 
 pub(super) const TIMES: Validation = Validation {
     name: "control-times",
@@ -25,11 +27,31 @@ pub(super) const LIDAR_LOOP: Validation = Validation {
 pub(super) const LIDAR_LATTICE: Validation = Validation {
     name: "lidar-lattice",
     about: "the lidar's loop in resolved flow: a law of its own record, power and blade loads of two turbines in four winds by the closed over the open loop, beside a published table",
-    cost: Cost::Minutes(12),
+    cost: Cost::Minutes(55),
     run: lidar_table::lidar_lattice,
     pictures: None,
     page: "control-design",
     recorded: include_str!("../../recorded/lidar-lattice.toml"),
+};
+
+pub(super) const LIDAR_TABLE: Validation = Validation {
+    name: "lidar-table",
+    about: "power and blade loads of two turbines with free-vortex wakes in four winds, by the lidar's closed over the open loop, beside a published table",
+    cost: Cost::Minutes(180),
+    run: lidar_table::lidar_table,
+    pictures: None,
+    page: "control-design",
+    recorded: include_str!("../../recorded/lidar-table.toml"),
+};
+
+pub(super) const LIDAR_FAMILY: Validation = Validation {
+    name: "lidar-family",
+    about: "laws of the lidar's loop made at three wind speeds, in a wind that rises from the first to the last: what they hold, beside one law alone",
+    cost: Cost::Minutes(15),
+    run: lidar_family::lidar_family,
+    pictures: None,
+    page: "control-design",
+    recorded: include_str!("../../recorded/lidar-family.toml"),
 };
 
 pub(super) const PHASE_PREVIEW: Validation = Validation {

@@ -240,7 +240,7 @@ fn difference(table: &Table, there: &Meta, meta: &Meta) -> Result<Option<String>
         format!("it varies {}, not {}", meta.columns.join(", "), there.columns.join(", "))
     } else {
         format!(
-            "its levels, its case or a file that this names are others than those of the {n_tasks} tasks there"
+            "its levels, its draw, its case or a file that this names are others than those of the {n_tasks} tasks there"
         )
     }))
 }

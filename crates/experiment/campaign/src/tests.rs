@@ -2,8 +2,6 @@
 
 use super::*;
 use crate::column::Values;
-use crate::table::Table;
-use crate::task::{self, Task};
 use basis::records::{Cost as Spent, Summary};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,6 +10,7 @@ use study::{Outcome, StudyOptions};
 use tempfile::TempDir;
 
 mod claims;
+mod draw;
 
 /// A stiff turbine in wind that is the same everywhere, for 20 s: a baseline and a helix.
 const CASE: &str = r#"
@@ -78,7 +77,7 @@ fn said(error: &CampaignError) -> String {
 
 /// The numbers column called `name`.
 fn column(out: &Path, name: &str) -> Vec<Option<f64>> {
-    let (columns, _) = collect::columns(&Table::open(out).unwrap(), out).unwrap();
+    let (columns, _) = collect::columns(&table::Table::open(out).unwrap(), out).unwrap();
     let found = columns.into_iter().find(|column| column.name == name);
     match found.unwrap_or_else(|| panic!("no column {name}")).values {
         Values::Number(values) => values,
@@ -244,42 +243,11 @@ fn a_folder_of_another_plan_is_refused_by_name() {
     // The case may not: neither for a new plan nor for a task of the old one.
     change("case.toml", "spin_up = 5.0", "spin_up = 6.0");
     let error = said(&planned(folder.path()).unwrap_err());
-    assert!(error.contains("its levels, its case or a file"), "{error}");
+    assert!(error.contains("its levels, its draw, its case or a file"), "{error}");
     let changed = run(&out, &RunOptions::default(), &AtomicBool::new(false), &mut Silent);
     let changed = said(&changed.unwrap_err());
     assert!(changed.contains("is not what was planned"), "{changed}");
     assert_eq!(status(&out).unwrap().counts.pending, 6);
-}
-
-#[test]
-fn a_draw_has_whole_combinations_and_those_of_a_smaller_one() {
-    let drawn = |draw: &str| {
-        let text = CAMPAIGN.replace("[factors]", &format!("seeds = [1, 2]\n{draw}\n[factors]"));
-        let folder = written(&text);
-        let file = formats::shipped::read_campaign(&folder.path().join("campaign.toml")).unwrap();
-        let task::Tasks { tasks, n_excluded, n_undrawn } = task::all(&file).unwrap();
-        assert_eq!(n_excluded, 0);
-        (tasks, n_undrawn)
-    };
-    let (all, undrawn) = drawn("");
-    assert_eq!((all.len(), undrawn), (12, 0));
-    assert_eq!(drawn("draw = 7"), (all.clone(), 0));
-    let (four, undrawn) = drawn("draw = 4");
-    assert_eq!((four.len(), undrawn), (8, 4));
-    let (two, undrawn) = drawn("draw = 2");
-    assert_eq!((two.len(), undrawn), (4, 8));
-    for tasks in [&two, &four] {
-        // Both seeds of each, next to each other, in the order of all.
-        let is_pair = |pair: &[Task]| {
-            let [first, second] = pair else { return false };
-            first.columns[..2] == second.columns[..2] && first.columns[2] != second.columns[2]
-        };
-        assert!(tasks.chunks(2).all(is_pair), "{tasks:?}");
-        let places = tasks.iter().map(|task| all.iter().position(|other| other == task));
-        let places: Vec<Option<usize>> = places.collect();
-        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}");
-    }
-    assert!(two.iter().all(|task| four.contains(task)));
 }
 
 #[test]

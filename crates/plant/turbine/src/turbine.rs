@@ -173,9 +173,11 @@ impl Turbine {
 
     /// The same, whose structure takes steps of at most `step` (s) in place of
     /// [`LONGEST_STRUCTURAL_STEP`]: shorter ones, or longer ones that cost less and follow the fast modes
-    /// less well. They are never longer than the intervals in which it is advanced.
+    /// less well. At rated speed they never turn the rotor by more than [`FARTHEST_STRUCTURAL_STEP`], and
+    /// they are never longer than the intervals in which it is advanced.
     pub fn with_structural_steps(self, step: f64) -> Self {
-        Self { longest_step: step, ..self }
+        let farthest = FARTHEST_STRUCTURAL_STEP / self.definition.rated_rotor_speed;
+        Self { longest_step: step.min(farthest), ..self }
     }
 
     /// Advances the turbine by `interval` (s) under constant `commands`.

@@ -70,7 +70,7 @@ pub(super) static TABLE: Table = Table {
             from(0.3, 3.0),
             "–",
             Otherwise("1 with a `preview`"),
-            "Speed at which the helix travels, over the wind that the scan shows, whose points count with the square of their distance from the axis. A percent turns the phase by a percent of the time of travel.",
+            "Speed at which the helix travels, over that of the free wind as the scan shows it, whose points count with the square of their distance from the axis. A percent turns the phase by a percent of the time of travel.",
         ),
         key(
             "fallback",

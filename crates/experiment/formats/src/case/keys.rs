@@ -200,7 +200,7 @@ pub(super) static TURBINE: Table = Table {
             from(0.001, 0.1),
             "s",
             Otherwise("0.025, less of a small and fast rotor"),
-            "Longest step of the structure; never longer than a step of the flow, which may be cut into several. Longer ones cost less and follow fast modes less well: 0.05 changes equivalent loads of a large turbine by about a percent (docs/validation/openfast.md).",
+            "Longest step of the structure; a step of the flow is cut into as many as it takes, and at rated speed none turns the rotor by more than 0.05 rad. Longer ones cost less and follow fast modes less well: 0.05 changes equivalent loads of a large turbine by up to 0.8 % (docs/validation/openfast.md).",
         ),
         key(
             "stall",

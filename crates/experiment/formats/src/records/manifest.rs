@@ -227,16 +227,18 @@ pub fn sha256_of_file(path: &Path, what: &'static str) -> Result<String, FileErr
     let about = file.metadata().map_err(failed)?;
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let mark = about.modified().ok().filter(|_| about.len() >= LARGE);
-    let mark = mark.map(|changed| (path.to_owned(), about.len(), changed));
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mark = mark.map(|changed| (whole, about.len(), changed));
     if let Some(digest) = mark.as_ref().and_then(|mark| known().get(mark).cloned()) {
         return Ok(digest);
     }
     let digest = digest_of(file).map_err(failed)?;
     if let Some(mark) = mark {
         let mut known = known();
-        if known.len() < MOST_KNOWN {
-            known.insert(mark, digest.clone());
+        if known.len() == MOST_KNOWN {
+            known.clear();
         }
+        known.insert(mark, digest.clone());
     }
     Ok(digest)
 }
@@ -285,14 +287,20 @@ mod tests {
             fs::write(file.path(), bytes).unwrap();
             assert_eq!(sha256_of_file(file.path(), "bytes").unwrap(), sha256(bytes));
         }
-        // A large one that changes is read again.
-        for byte in [1, 2] {
-            let bytes = vec![byte; LARGE as usize + usize::from(byte)];
+        // A large one that changes is read again, and only then.
+        let write = |byte: u8, changed: SystemTime| {
+            let bytes = vec![byte; LARGE as usize];
             fs::write(file.path(), &bytes).unwrap();
-            for _ in 0..2 {
-                assert_eq!(sha256_of_file(file.path(), "bytes").unwrap(), sha256(&bytes));
-            }
-        }
+            file.as_file().set_modified(changed).unwrap();
+            sha256(&bytes)
+        };
+        let found = || sha256_of_file(file.path(), "bytes").unwrap();
+        let first = write(1, SystemTime::UNIX_EPOCH);
+        assert_eq!(found(), first);
+        write(2, SystemTime::UNIX_EPOCH);
+        assert_eq!(found(), first);
+        let second = write(2, SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1));
+        assert_eq!(found(), second);
     }
 
     #[test]

@@ -128,6 +128,22 @@ fn winds(turbine: &Turbine) -> Vec<Vector3> {
 }
 
 #[test]
+fn structural_steps_are_as_long_as_asked_and_never_turn_too_far() {
+    let usual = built(true, by_flow(false));
+    let farthest = FARTHEST_STRUCTURAL_STEP / usual.definition.rated_rotor_speed;
+    let after = |mut turbine: Turbine| {
+        turbine.advance(0.3, &winds(&turbine), &commands(0.0));
+        turbine.state
+    };
+    let of = |step: f64| after(usual.clone().with_structural_steps(step));
+    assert_eq!(of(LONGEST_STRUCTURAL_STEP), after(usual.clone()));
+    assert_ne!(of(0.5 * LONGEST_STRUCTURAL_STEP), after(usual.clone()));
+    assert!(farthest > LONGEST_STRUCTURAL_STEP && farthest < 0.1);
+    assert_ne!(of(farthest), after(usual.clone()));
+    assert_eq!(of(0.3), of(farthest));
+}
+
+#[test]
 fn the_air_feels_what_the_blades_feel() {
     let mut turbine = turbine().without_bodies();
     let winds = winds(&turbine);

@@ -6,7 +6,7 @@
 //! knows the past alone, lags by its memory.
 //!
 //! The helix is that of the wind at the rotor's place without the rotor, against which estimates are judged;
-//! air that the rotor slows comes later by some degrees, which is left out. So the time of travel is the
+//! air that the rotor slows comes some 10° later, which is left out. So the time of travel is the
 //! distance over the free speed. That is the mean over the scan's points, each with the square of its
 //! distance from the axis, as which a slope in the wind weighs it, for it is the slopes that are carried;
 //! brought to the free speed where a rotor of the given induction slows the air at the scan ([`slowing`]);
@@ -212,7 +212,8 @@ impl PreviewEstimator {
             let arrival = point.time + ahead;
             let number = (arrival / slot).floor() as i64;
             let factors = factors(&point, arrival, &self.settings);
-            self.state.slots.add(number, &factors, point.wind);
+            let free = point.wind / slowing::speed_share(point.upstream, radius, induction);
+            self.state.slots.add(number, &factors, free);
             furthest = furthest.max(ahead);
         }
         self.state.newest = Some([newest, furthest]);

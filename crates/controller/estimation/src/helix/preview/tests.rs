@@ -294,6 +294,7 @@ fn the_slowing_at_the_scan_is_made_good() {
     assert!((speed - SPEED).abs() < 1e-9, "{speed}");
     let time = (n - 1) as f64 * INTERVAL;
     assert!(errors(&wave, time, &found).iter().all(|error| error.abs() < 0.01));
+    assert!((found.tilt.amplitude - 0.8).abs() < 1e-6, "{}", found.tilt.amplitude);
 }
 
 /// What carries a shear is the wind where the shear shows.
