@@ -5,6 +5,7 @@ use crate::Row;
 use crate::lidar_loop::{Asked, designed, identified};
 use crate::row::Tolerance::{self, AtLeast, AtMost};
 use crate::studies::{Carried, failure, summaries};
+use analysis::statistics::mean;
 use basis::records::Series;
 use formats::records::read_study;
 use std::path::Path;
@@ -122,11 +123,10 @@ fn holds(folder: &Path, run: &str) -> Result<[Held; HOLDS.len()], String> {
     for (hold, (speed, held)) in HOLDS.into_iter().zip(&mut all).enumerate() {
         let end = HOLD * (hold as f64 + 1.0);
         *held = held_over(&series, [end - JUDGED, end])?;
-        let seen = series.column("T1.LoopWind").map(|wind| {
-            let rows = rows_of(&series, [end - JUDGED, end]);
-            wind[rows.clone()].iter().sum::<f64>() / rows.len() as f64
+        let seen = series.column("T1.LoopWind").map_or(String::new(), |wind| {
+            let wind = mean(&wind[rows_of(&series, [end - JUDGED, end])]);
+            format!(", schedules by {wind:.2} m/s")
         });
-        let seen = seen.map_or(String::new(), |wind| format!(", schedules by {wind:.2} m/s"));
         tell!(
             "{run}, {speed} m/s: {:.2} m off its reference, spread {:.2} m{seen}",
             held.distance,
@@ -144,15 +144,13 @@ fn rows_of(series: &Series, [from, to]: [f64; 2]) -> std::ops::Range<usize> {
 
 fn held_over(series: &Series, span: [f64; 2]) -> Result<Held, String> {
     let rows = rows_of(series, span);
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mut off, mut squares) = (0.0, 0.0);
     for (name, reference) in ["T1.HubVortexTilt", "T1.HubVortexYaw"].into_iter().zip(REFERENCE) {
         let column = series.column(name).ok_or_else(|| format!("there is no {name}"))?;
         let column = column.get(rows.clone()).ok_or("the series ends early")?;
         let at = mean(column);
         off += (at - reference).powi(2);
-        squares +=
-            column.iter().map(|value| (value - at).powi(2)).sum::<f64>() / column.len() as f64;
+        squares += mean(&column.iter().map(|value| (value - at).powi(2)).collect::<Vec<f64>>());
     }
     Ok(Held { distance: off.sqrt(), spread: squares.sqrt() })
 }

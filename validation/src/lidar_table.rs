@@ -25,9 +25,9 @@ const PUBLISHED: [[[f64; WHOSE.len()]; QUANTITIES.len()]; WINDS.len() - 1] = [
 
 /// What the resolved flow is, in rows.
 const LATTICE: &str = "resolved flow, 16 cells a diameter";
-/// Seeds of the turbulence in resolved flow, and in free vortices, whose runs take ten times as
-/// long.
+/// Seeds of the turbulence in resolved flow.
 const SEEDS: [u64; 5] = [FIRST_SEED, 2, 3, 4, 5];
+/// The same in free vortices, whose runs take ten times as long.
 const FREE_SEEDS: [u64; 2] = [FIRST_SEED, 2];
 /// Samples of the record for one of the model: two seconds.
 const DECIMATE: usize = 38;

@@ -11,9 +11,9 @@
 //! A task is a study of its own, made by [`study::run`] with overrides, as `wakemix run --set` makes it, and
 //! has the same bits. Where tasks stand is in an SQLite database in the folder.
 //!
-//! Tasks are made in this process, on threads: a study holds no state of the process, a panic ends its task
-//! alone, and one Ctrl-C reaches all. What a foreign controller crashes is the process: tasks that come
-//! back are made alone, and after three such ends one is failed.
+//! Tasks are made in this process, on threads: a study shares no state of the process but what a file or a
+//! rotor always comes to, a panic ends its task alone, and one Ctrl-C reaches all. What a foreign controller
+//! crashes is the process: tasks that come back are made alone, and after three such ends one is failed.
 
 mod claim;
 mod collect;

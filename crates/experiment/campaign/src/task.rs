@@ -26,8 +26,13 @@ pub(crate) struct Task {
 impl Task {
     /// Factors with their levels, in words: `wind.speed = 8, wind.seed = 1`.
     pub(crate) fn words(&self) -> String {
-        let words = |(name, value): &(String, SweptValue)| format!("{name} = {}", value.words());
-        self.columns.iter().map(words).collect::<Vec<_>>().join(", ")
+        self.words_without("").join(", ")
+    }
+
+    /// The same one by one, but for the key `left_out`.
+    fn words_without(&self, left_out: &str) -> Vec<String> {
+        let kept = self.columns.iter().filter(|(name, _)| name != left_out);
+        kept.map(|(name, value)| format!("{name} = {}", value.words())).collect()
     }
 
     fn is_excluded_by(&self, exclusion: &Exclusion) -> bool {
@@ -89,12 +94,7 @@ pub(crate) fn all(file: &CampaignFile) -> Result<Tasks, CampaignError> {
 /// Leaves `n_drawn` combinations in `tasks`, those that have the least hashes, each with all its seeds: so by
 /// chance, and the same each time; of a larger draw, those of a smaller one are a part.
 fn draw(tasks: &mut Vec<Task>, n_drawn: usize, seed_key: &str) {
-    let hash = |task: &Task| {
-        let combination = task.columns.iter().filter(|(name, _)| name != seed_key);
-        let words: Vec<String> =
-            combination.map(|(name, value)| format!("{name} = {}", value.words())).collect();
-        records::sha256(words.join("\n").as_bytes())
-    };
+    let hash = |task: &Task| records::sha256(task.words_without(seed_key).join("\n").as_bytes());
     let hashes: Vec<String> = tasks.iter().map(hash).collect();
     let all: BTreeSet<&String> = hashes.iter().collect();
     let drawn: BTreeSet<&String> = all.into_iter().take(n_drawn).collect();

@@ -12,7 +12,8 @@ use formats::records;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, absolute};
+use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 /// What the files of wind hold, in words.
@@ -24,6 +25,10 @@ const END: u64 = 1 << 16;
 
 /// Length of a file (bytes) and when it was changed; none where it is not there.
 type Stamp = Option<(u64, Option<SystemTime>)>;
+
+/// Digests of long files of wind that this process has read, by path, with the stamps that the files had:
+/// thousands of tasks of a campaign share a record.
+static LONG_WINDS: Mutex<BTreeMap<PathBuf, (Stamp, String)>> = Mutex::new(BTreeMap::new());
 
 /// Digests of files by their names, with the stamps that the files had.
 type Stamped = (Vec<Stamp>, BTreeMap<String, String>);
@@ -86,6 +91,29 @@ impl Inputs {
     }
 }
 
+/// SHA-256 of the file of wind at `path`, all of it. One of more than 16 MiB is read once in a process, as
+/// long as its length and the time of its last change stay.
+///
+/// # Errors
+/// [`FileError::System`].
+pub(crate) fn wind_digest(path: &Path) -> Result<String, FileError> {
+    let digest = || records::sha256_of_file(path, WIND);
+    let now = stamp(path);
+    let (true, Ok(whole)) = (now.is_some_and(|(length, _)| length > WHOLE), absolute(path)) else {
+        return digest();
+    };
+    let known = || LONG_WINDS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((then, found)) = known().get(&whole)
+        && *then == now
+    {
+        return Ok(found.clone());
+    }
+    // Not under the lock: other records need not wait.
+    let found = digest()?;
+    known().insert(whole, (now, found.clone()));
+    Ok(found)
+}
+
 fn stamp(path: &Path) -> Stamp {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.len(), metadata.modified().ok()))
@@ -110,6 +138,32 @@ fn wind_print(path: &Path) -> Result<String, FileError> {
 mod tests {
     use super::*;
     use std::fs;
+    use std::time::Duration;
+
+    const SECOND: Duration = Duration::from_secs(1);
+
+    #[test]
+    fn a_long_record_is_read_again_once_it_changes_and_a_short_one_always() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let write = |byte: u8, length: u64, changed: SystemTime| {
+            let bytes = vec![byte; length as usize];
+            fs::write(file.path(), &bytes).unwrap();
+            file.as_file().set_modified(changed).unwrap();
+            records::sha256(&bytes)
+        };
+        let found = || wind_digest(file.path()).unwrap();
+        let (before, after) = (SystemTime::UNIX_EPOCH, SystemTime::UNIX_EPOCH + SECOND);
+        let first = write(1, WHOLE + 1, before);
+        assert_eq!(found(), first);
+        let second = write(2, WHOLE + 1, before);
+        assert_eq!(found(), first);
+        assert_eq!(write(2, WHOLE + 1, after), second);
+        assert_eq!(found(), second);
+        for byte in [3, 4] {
+            let short = write(byte, WHOLE, after);
+            assert_eq!(found(), short);
+        }
+    }
 
     #[test]
     fn a_wind_that_is_changed_anywhere_in_a_small_file_or_at_an_end_of_a_large_one_is_another() {

@@ -2,6 +2,7 @@
 
 use crate::StudyError;
 use crate::atmosphere;
+use crate::inputs::wind_digest;
 use crate::prepared::Prepared;
 use farm::case::Run;
 use farm::wind::Site;
@@ -161,19 +162,20 @@ impl Prepared {
         texts.chain(self.libraries_of(run)).collect()
     }
 
-    /// SHA-256 of each file of wind that the case reads, as the files are now.
+    /// SHA-256 of each file of wind that the case reads, as the files are now: by their
+    /// [digests](wind_digest).
     ///
     /// # Errors
     /// [`StudyError::File`] for one that cannot be read.
     pub(crate) fn wind_digests(&self) -> Result<WindDigests, StudyError> {
         let mut digests = BTreeMap::new();
         if let Some(name) = &self.case.wind.table {
-            let digest = records::sha256_of_file(&self.folder().join(name), "the table of wind")?;
+            let digest = wind_digest(&self.folder().join(name))?;
             digests.insert(name.clone(), digest);
         }
         for path in atmosphere::files(&self.case, self.folder())? {
             let named = path.strip_prefix(self.folder()).unwrap_or(&path);
-            let digest = records::sha256_of_file(&path, "the file of wind")?;
+            let digest = wind_digest(&path)?;
             digests.insert(named.display().to_string(), digest);
         }
         Ok(digests)

@@ -6,10 +6,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-use std::time::SystemTime;
+use std::io::Read;
+use std::path::Path;
 
 /// Bytes of a file that are taken in at once.
 const BUFFER: usize = 1 << 20;
@@ -206,47 +204,17 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(Sha256::new_with_prefix(bytes))
 }
 
-/// Length from which the digest of a file is remembered (bytes).
-const LARGE: u64 = 1 << 20;
-/// Digests that are remembered (–).
-const MOST_KNOWN: usize = 4096;
-
-/// Digests of large files that were read, by path, length and time of change: thousands of tasks of a
-/// campaign share a record of wind.
-static KNOWN: Mutex<BTreeMap<(PathBuf, u64, SystemTime), String>> = Mutex::new(BTreeMap::new());
-
 /// SHA-256 of the file at `path`, which holds `what`, as `sha256sum` prints it; of any length in little
-/// memory. A large file whose length and time of change are those that this process has met is not read
-/// again.
+/// memory.
 ///
 /// # Errors
 /// [`FileError::System`].
 pub fn sha256_of_file(path: &Path, what: &'static str) -> Result<String, FileError> {
     let failed = |source| FileError::system("read", what, path, source);
-    let file = File::open(path).map_err(failed)?;
-    let about = file.metadata().map_err(failed)?;
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    let mark = about.modified().ok().filter(|_| about.len() >= LARGE);
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let mark = mark.map(|changed| (whole, about.len(), changed));
-    if let Some(digest) = mark.as_ref().and_then(|mark| known().get(mark).cloned()) {
-        return Ok(digest);
-    }
-    let digest = digest_of(file).map_err(failed)?;
-    if let Some(mark) = mark {
-        let mut known = known();
-        if known.len() == MOST_KNOWN {
-            known.clear();
-        }
-        known.insert(mark, digest.clone());
-    }
-    Ok(digest)
-}
-
-fn digest_of(mut file: File) -> io::Result<String> {
+    let mut file = File::open(path).map_err(failed)?;
     let (mut digest, mut bytes) = (Sha256::new(), vec![0; BUFFER]);
     loop {
-        match file.read(&mut bytes)? {
+        match file.read(&mut bytes).map_err(failed)? {
             0 => return Ok(hexadecimal(digest)),
             n => digest.update(&bytes[..n]),
         }
@@ -287,20 +255,6 @@ mod tests {
             fs::write(file.path(), bytes).unwrap();
             assert_eq!(sha256_of_file(file.path(), "bytes").unwrap(), sha256(bytes));
         }
-        // A large one that changes is read again, and only then.
-        let write = |byte: u8, changed: SystemTime| {
-            let bytes = vec![byte; LARGE as usize];
-            fs::write(file.path(), &bytes).unwrap();
-            file.as_file().set_modified(changed).unwrap();
-            sha256(&bytes)
-        };
-        let found = || sha256_of_file(file.path(), "bytes").unwrap();
-        let first = write(1, SystemTime::UNIX_EPOCH);
-        assert_eq!(found(), first);
-        write(2, SystemTime::UNIX_EPOCH);
-        assert_eq!(found(), first);
-        let second = write(2, SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(1));
-        assert_eq!(found(), second);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use super::beam::Wrench;
 use super::coordinates::{Coordinates, N_MODES, N_TOWER};
+use super::frame::MovingFrame;
 use super::machine::{Machine, ModeTables, Motion, N_BLADE_PARTS};
 use super::projection::Projection;
 use super::shapes::{Place, weighted};
@@ -56,6 +57,17 @@ struct Station {
     across: Vector3,
     /// Part of the blade that contains it.
     part: usize,
+}
+
+impl Station {
+    /// Its place (m) and the direction of the blade's line there, farm frame, of a blade that stands as
+    /// `frame` has it, where the station lies at `position` (m) in it and its section is turned by `turn`
+    /// (rad).
+    #[inline(always)]
+    fn on_line(&self, frame: &MovingFrame, position: Vector3, turn: Vector3) -> (Vector3, Vector3) {
+        let along = self.along + turn.cross(self.along);
+        (frame.origin + frame.axes * position, (frame.axes * along).normalize())
+    }
 }
 
 /// Resultants of applied loads: on each part of each blade about the rotor apex in the blade's axes, on the
@@ -141,8 +153,7 @@ impl Stations {
                 let (position, partials) = station.place.at(q);
                 let velocity = spin.cross(position) + weighted(&partials, v);
                 let turn = station.place.turn(q);
-                let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
-                let position = frame.origin + frame.axes * position;
+                let (position, span) = station.on_line(frame, position, turn);
                 // To second order: where a blade bends in both directions, its sections also turn about it,
                 // by half the product of the slopes. That goes with gravity once a turn and so leaves a
                 // steady moment on the hub.
@@ -175,9 +186,9 @@ impl Stations {
             let cone = machine.cone_axes(blade, motion);
             let q = &q.blades[blade];
             for ((position, axes), station) in positions.iter_mut().zip(axes).zip(&self.blade) {
-                let turn = station.place.turn(q);
-                let span = (frame.axes * (station.along + turn.cross(station.along))).normalize();
-                *position = frame.origin + frame.axes * station.place.at(q).0;
+                let span;
+                (*position, span) =
+                    station.on_line(frame, station.place.at(q).0, station.place.turn(q));
                 let swept = hub.axes.x_axis.cross(*position - hub.origin);
                 *axes = self.projection.axes(span, swept, &cone);
             }

@@ -6,12 +6,12 @@
 //! knows the past alone, lags by its memory.
 //!
 //! The helix is that of the wind at the rotor's place without the rotor, against which estimates are judged;
-//! air that the rotor slows comes some 10° later, which is left out. So the time of travel is the
-//! distance over the free speed. That is the mean over the scan's points, each with the square of its
-//! distance from the axis, as which a slope in the wind weighs it, for it is the slopes that are carried;
-//! brought to the free speed where a rotor of the given induction slows the air at the scan ([`slowing`]);
-//! smoothed over a period. An error of a percent in that speed turns
-//! the phase by a percent of the time of travel: 1.8° where half a period is looked ahead.
+//! air that the rotor slows comes some 10° later, which is left out. So the time of travel is the distance
+//! over the free speed. That is the mean over the scan's points, each with the square of its distance from
+//! the axis, as which a slope in the wind weighs it, for it is the slopes that are carried; brought to the
+//! free speed where a rotor of the given induction slows the air at the scan ([`slowing`]); smoothed over a
+//! period. An error of a percent in that speed turns the phase by a percent of the time of travel: 1.8°
+//! where half a period is looked ahead.
 //!
 //! What is not known is taken as it is best: lines of sight as if they came from the rotor's centre (a lidar
 //! a few metres behind it sees everything a percent too strong), winds across the line of sight as none.
@@ -182,13 +182,16 @@ impl PreviewEstimator {
         let PreviewSettings { radius, rate, speed_factor, .. } = self.settings;
         let period = TAU / rate;
         let [before, _] = self.state.newest.unwrap_or([f64::NEG_INFINITY; 2]);
+        let free = |point: Point| {
+            let share = slowing::speed_share(point.upstream, radius, induction);
+            Point { wind: point.wind / share, ..point }
+        };
         let points = (0..scan.n_points()).filter_map(|index| point(scan, index));
-        let fresh = points.filter(|point| point.time > before);
+        let fresh = points.filter(|point| point.time > before).map(free);
         let (mut speeds, mut newest) = ([0.0; 2], before);
         for point in fresh.clone() {
             let weight = (point.up * point.up + point.right * point.right) / (radius * radius);
-            let free = point.wind / slowing::speed_share(point.upstream, radius, induction);
-            speeds[0] += weight * free;
+            speeds[0] += weight * point.wind;
             speeds[1] += weight;
             newest = newest.max(point.time);
         }
@@ -212,8 +215,7 @@ impl PreviewEstimator {
             let arrival = point.time + ahead;
             let number = (arrival / slot).floor() as i64;
             let factors = factors(&point, arrival, &self.settings);
-            let free = point.wind / slowing::speed_share(point.upstream, radius, induction);
-            self.state.slots.add(number, &factors, free);
+            self.state.slots.add(number, &factors, point.wind);
             furthest = furthest.max(ahead);
         }
         self.state.newest = Some([newest, furthest]);
