@@ -36,6 +36,7 @@ pub mod lidar_family;
 pub mod lidar_loop;
 pub mod lidar_table;
 mod list;
+pub mod load_database;
 pub mod meandering;
 pub mod memory;
 pub mod pages;
@@ -50,6 +51,7 @@ pub mod structure;
 mod studies;
 pub mod synthesis;
 pub mod tuning;
+pub mod tuning_array;
 pub mod tunnel;
 pub mod wake_analysis;
 

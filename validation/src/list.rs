@@ -1,6 +1,7 @@
 //! All validations, in the order in which they are listed.
 
 mod air;
+mod desk;
 mod elsewhere;
 mod loops;
 mod tunnel;
@@ -371,6 +372,8 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "tuning",
         recorded: include_str!("../recorded/tuning.toml"),
     },
+    desk::TUNING_ARRAY,
+    desk::LOAD_DATABASE,
     Validation {
         name: "wake-analysis",
         about: "analyses of wakes on fields whose answers are known: vortices, leapfrogging pairs, phases, particles, fluxes, modes; budget of a lattice wake",

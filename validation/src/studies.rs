@@ -19,7 +19,8 @@ use study::{Observer, Outcome, StudyError, StudyOptions};
 const SOURCE: &str = "–";
 
 /// Prints progress as plain lines.
-struct Lines {
+#[derive(Default)]
+pub(crate) struct Lines {
     last: String,
 }
 
@@ -103,7 +104,7 @@ pub(crate) fn summaries_of(
         resume: formats::records::is_begun(&output),
         ..StudyOptions::default()
     };
-    let mut observer = Lines { last: String::new() };
+    let mut observer = Lines::default();
     match study::run(&options, &AtomicBool::new(false), &mut observer) {
         Ok(Outcome::Done { summaries, .. }) => Ok((summaries, output)),
         Ok(other) => Err(format!("the study ended early: {other:?}")),
@@ -113,7 +114,7 @@ pub(crate) fn summaries_of(
 }
 
 /// The folder of what is made under this `name`, claimed for this build, and the lock on it.
-fn folder_of(name: &str) -> Result<(PathBuf, Lock), String> {
+pub(crate) fn folder_of(name: &str) -> Result<(PathBuf, Lock), String> {
     let output = Path::new("runs").join(format!("validate-{name}"));
     let lock = Path::new("runs").join(format!(".validate-{name}.lock"));
     let what = format!("{} of this validation", output.display());
@@ -138,7 +139,7 @@ pub(crate) fn precursor(
         resume: PrecursorFolder::new(&output).case_path().exists(),
         ..PrecursorOptions::default()
     };
-    let mut observer = Lines { last: String::new() };
+    let mut observer = Lines::default();
     match study::precursor::precursor(&options, &AtomicBool::new(false), &mut observer) {
         Ok(PrecursorOutcome::Done { result, folder }) => {
             let planes = fs::canonicalize(folder.planes_path());
@@ -151,7 +152,7 @@ pub(crate) fn precursor(
 }
 
 /// `error` with its causes and its fix, on one line.
-fn words(error: &dyn Diagnostic) -> String {
+pub(crate) fn words(error: &dyn Diagnostic) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(deeper) = cause {

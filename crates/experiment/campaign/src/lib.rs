@@ -29,6 +29,7 @@ mod run;
 mod status;
 mod table;
 mod task;
+mod whole;
 mod worker;
 
 pub use collect::{Collected, collect};

@@ -56,21 +56,14 @@ pub(crate) fn make(
         Err(panic) => return Ok(panicked(&*panic)),
     }
     let output = folder_of(folder, claimed.id);
-    let mut overrides = claimed.task.overrides.clone();
-    overrides.extend(meta.threads.map(|threads| format!("flow.threads={threads}")));
-    let study = |resume: bool| {
-        let options = StudyOptions {
-            case: meta.case.clone(),
-            output: Some(output.clone()),
-            runs: meta.runs.clone(),
-            overrides: overrides.clone(),
-            resume,
-            overwrite: !resume,
-            jobs: Some(1),
-            ..StudyOptions::default()
-        };
-        catch_unwind(AssertUnwindSafe(|| study::run(&options, stop, &mut Silent)))
+    let asked = Study {
+        case: &meta.case,
+        runs: &meta.runs,
+        overrides: &claimed.task.overrides,
+        threads: meta.threads,
+        output: &output,
     };
+    let study = |resume: bool| catch_unwind(AssertUnwindSafe(|| asked.run(resume, stop)));
     let resume = records::is_begun(&output);
     let mut made = study(resume);
     if resume
@@ -90,6 +83,38 @@ pub(crate) fn make(
         Ok(Err(error)) if is_of_machine(&error) => Err(stopped(error)),
         Ok(Err(error)) => Ok(Made::Failed(in_words(&error))),
         Err(panic) => Ok(panicked(&*panic)),
+    }
+}
+
+/// The study that a task is.
+pub(crate) struct Study<'a> {
+    pub(crate) case: &'a Path,
+    /// Runs that are made; all when empty.
+    pub(crate) runs: &'a [String],
+    pub(crate) overrides: &'a [String],
+    /// Threads (–); all cores when absent.
+    pub(crate) threads: Option<usize>,
+    pub(crate) output: &'a Path,
+}
+
+impl Study<'_> {
+    /// Makes it anew, or goes on with what is there.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub(crate) fn run(&self, resume: bool, stop: &AtomicBool) -> Result<Outcome, StudyError> {
+        let threads = self.threads.map(|threads| format!("flow.threads={threads}"));
+        let options = StudyOptions {
+            case: self.case.to_owned(),
+            output: Some(self.output.to_owned()),
+            runs: self.runs.to_owned(),
+            overrides: self.overrides.iter().cloned().chain(threads).collect(),
+            resume,
+            overwrite: !resume,
+            jobs: Some(1),
+            ..StudyOptions::default()
+        };
+        study::run(&options, stop, &mut Silent)
     }
 }
 
@@ -201,7 +226,7 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 }
 
 /// Takes a file or folder away, if it is there.
-fn remove(path: &Path) -> Result<(), FileError> {
+pub(crate) fn remove(path: &Path) -> Result<(), FileError> {
     let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     match removed {
         Err(error) if error.kind() != ErrorKind::NotFound => {

@@ -3,6 +3,7 @@
 use crate::error::CampaignError;
 use crate::table::{Meta, Table, path_in};
 use crate::task::{self, Task, Tasks, VERSION};
+use crate::whole;
 use formats::atomic;
 use formats::case::{CampaignFile, Keep};
 use formats::{machine, records, shipped};
@@ -10,8 +11,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use study::Sample;
 
-/// Tasks that are timed (–).
+/// Tasks that are looked at and timed for a moment (–).
 const SAMPLED: usize = 3;
+/// Time of a task (s) up to which some are made whole instead: of a second, the steps are two thirds.
+const WHOLE: f64 = 20.0;
 /// Disk that the numbers of a run of a task take in the table (bytes), about.
 const NUMBERS: u64 = 8 << 10;
 
@@ -37,6 +40,8 @@ pub struct Cost {
     pub threads: usize,
     /// Tasks that were timed (–).
     pub n_sampled: usize,
+    /// Whether these were made whole; else a moment of each was timed.
+    pub made_whole: bool,
     /// Memory of the tasks that are made at a time (bytes).
     pub memory: u64,
     /// Disk that stays (bytes).
@@ -151,8 +156,9 @@ fn cost(
 ) -> Result<Cost, CampaignError> {
     let mut by_hash: Vec<(&String, &Task)> = hashes.iter().zip(tasks).collect();
     by_hash.sort_by_key(|(hash, _)| *hash);
+    let in_turn: Vec<&Task> = by_hash.into_iter().map(|(_, task)| task).collect();
     let mut samples = Vec::with_capacity(SAMPLED);
-    for (_, task) in by_hash.into_iter().take(SAMPLED) {
+    for task in in_turn.iter().take(SAMPLED) {
         let case = shipped::read(&file.case, &task.overrides)?;
         let failed =
             |source| CampaignError::Sample { settings: task.words(), source: Box::new(source) };
@@ -160,19 +166,39 @@ fn cost(
     }
     let cores = study::cores();
     let n_workers = n_workers(threads).min(tasks.len());
-    Ok(spread(&samples, tasks.len(), n_workers, threads.unwrap_or(cores), file.keep))
+    let mut times = Times {
+        seconds: samples.iter().filter_map(|sample| sample.wall_time).collect(),
+        n_sampled: samples.len(),
+        made_whole: false,
+    };
+    let longest = times.seconds.iter().copied().reduce(f64::max);
+    if longest.is_some_and(|longest| longest <= WHOLE) {
+        let seconds = whole::times(file, &in_turn, threads, n_workers)?;
+        times = Times { n_sampled: seconds.len(), seconds, made_whole: true };
+    }
+    Ok(spread(&samples, &times, tasks.len(), n_workers, threads.unwrap_or(cores), file.keep))
 }
 
-/// The cost of `n_tasks` that are like `samples`, `n_workers` at a time, on so many `threads` each.
+/// What tasks took.
+pub(crate) struct Times {
+    /// Wall time of each whose time is known (s).
+    pub(crate) seconds: Vec<f64>,
+    pub(crate) n_sampled: usize,
+    pub(crate) made_whole: bool,
+}
+
+/// The cost of `n_tasks` that are like `samples` and take such `times`, `n_workers` at a time, on so many
+/// `threads` each.
 pub(crate) fn spread(
     samples: &[Sample],
+    times: &Times,
     n_tasks: usize,
     n_workers: usize,
     threads: usize,
     keep: Keep,
 ) -> Cost {
-    let times: Vec<f64> = samples.iter().filter_map(|sample| sample.wall_time).collect();
-    let mean = (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64);
+    let all = &times.seconds;
+    let mean = (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64);
     let most = |part: fn(&Sample) -> u64| samples.iter().map(part).max().unwrap_or(0);
     let kept = NUMBERS
         + match keep {
@@ -186,7 +212,8 @@ pub(crate) fn spread(
         wall_time: mean.map(|mean| n_tasks.div_ceil(n_workers) as f64 * mean),
         n_workers,
         threads,
-        n_sampled: samples.len(),
+        n_sampled: times.n_sampled,
+        made_whole: times.made_whole,
         memory: n_workers as u64 * most(|sample| sample.memory),
         disk: n_tasks as u64 * kept,
         passing: n_workers as u64 * most(|sample| sample.disk),

@@ -66,13 +66,14 @@ fn known(seconds: Option<f64>) -> String {
 
 fn cost(cost: &Cost) -> String {
     format!(
-        "about {} of CPU time; {} on this machine, {} at a time on {} thread{} each, by {} that were timed for a moment\nmemory {}; disk {} in the end and up to {} for tasks under way\n",
+        "about {} of CPU time; {} on this machine, {} at a time on {} thread{} each, by {} that were {}\nmemory {}; disk {} in the end and up to {} for tasks under way\n",
         known(cost.cpu_time),
         known(cost.wall_time),
         cost.n_workers,
         cost.threads,
         if cost.threads == 1 { "" } else { "s" },
         cost.n_sampled,
+        if cost.made_whole { "made to be timed" } else { "timed for a moment" },
         HumanBytes(cost.memory),
         HumanBytes(cost.disk),
         HumanBytes(cost.passing),

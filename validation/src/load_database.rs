@@ -1,0 +1,234 @@
+//! A database of loads in recorded wakes, and surrogates of it: what they leave of what was kept aside, beside
+//! a published table, and what the database costs beside what was foretold.
+
+use crate::Row;
+use crate::row::Tolerance::{self, AtMost, Within};
+use crate::studies::{Carried, failure, folder_of, summaries, words};
+use campaign::{CampaignError, Ended, Plan, Progress, RunOptions};
+use design::SurrogateTrend;
+use design::regression::{KernelText, TrainQuestion, Trained, train};
+use formats::atomic;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+const SOURCE: &str = "van der Hoek, Dammann, van Wingerden (2026), table 4, test set";
+const OWN: &str = "this program's claim";
+
+/// The campaign: a tenth of the database.
+const CAMPAIGN: &str = include_str!("../../examples/campaign/database.toml");
+/// How it draws, and how many combinations are drawn to be timed.
+const DRAW: &str = "draw = 1100";
+const DRAW_TO_TIME: &str = "draw = 20";
+/// Records of wind that it is in: cases that come with the program.
+const RECORDS: [&str; 2] = ["wake-slices", "wake-slices-array"];
+/// The factor whose levels are other winds.
+const BLOCK: &str = "wind.cut.block";
+
+/// Tasks of the published database (–), and cores that it is to be made on.
+const PUBLISHED_TASKS: f64 = 62_460.0;
+const CORES: f64 = 2.0;
+
+/// What surrogates know of the wind, on each of these quarters of the rotor, and of the turbine.
+const SECTORS: [&str; 4] = ["up", "right", "down", "left"];
+const OF_SECTOR: [&str; 2] = ["wind_speed", "turbulence_intensity"];
+const OF_TURBINE: [&str; 2] = ["turbine.T1.yaw_deg", "control.T1.amplitude_deg"];
+
+/// What is predicted: number of the summary, its name in the source, and the error there or the claim (%).
+const OUTPUTS: [(&str, &str, f64, &str); 13] = [
+    ("T1.power.mean", "power", 0.5, OWN),
+    ("T1.RootMxb1.del_m10", "RootMedg", 0.14, SOURCE),
+    ("T1.RootMyb1.del_m10", "RootMflp", 2.0, OWN),
+    ("T1.TwrBsMxt.del_m4", "TwrBsMxt", 8.69, SOURCE),
+    ("T1.TwrBsMyt.del_m4", "TwrBsMyt", 3.5, OWN),
+    ("T1.TwrBsMzt.del_m4", "TwrBsMzt", 2.47, SOURCE),
+    ("T1.YawBrMxp.del_m4", "YawBrMxp", 4.68, SOURCE),
+    ("T1.YawBrMyp.del_m4", "YawBrMyp", 1.90, SOURCE),
+    ("T1.YawBrMzp.del_m4", "YawBrMzp", 2.47, SOURCE),
+    ("T1.RotTorq.del_m4", "LSSGagMxs", 3.18, SOURCE),
+    ("T1.LSSTipMys.del_m4", "LSSGagMys", 2.0, OWN),
+    ("T1.LSSTipMzs.del_m4", "LSSGagMzs", 1.66, SOURCE),
+    ("T1.pitch_duty.worst_bearing_load", "PitchBr", 1.5, OWN),
+];
+/// What a 95 % band of what was kept aside is to hold (%).
+const COVERED: (f64, f64) = (94.0, 4.0);
+/// Share that is trained on (–), seed of the split, starts of each search (–): as the source, and the
+/// program's own.
+const SPLIT: f64 = 0.7;
+const SEED: u64 = 1;
+const STARTS: usize = 16;
+
+/// Records wakes, makes a tenth of the database in them, trains a surrogate of each load on 70 % of it, and
+/// gives errors and coverage of the rest as rows, then the time of a task beside what was foretold.
+pub fn load_database() -> Vec<Row> {
+    made().unwrap_or_else(failure)
+}
+
+fn made() -> Result<Vec<Row>, String> {
+    for case in RECORDS {
+        summaries(Carried::Shipped(case), case, Vec::new())?;
+    }
+    let (folder, _lock) = folder_of("load-database")?;
+    let planned = plan(&folder, "campaign", DRAW)?;
+    run(&planned)?;
+    let table = folder.join("loads.csv");
+    let collected = campaign::collect(&planned.folder, &table, &[BLOCK.to_owned()]);
+    let collected = collected.map_err(|error| words(&error))?;
+    tell!("{} rows, {} tasks are missing", collected.n_rows, collected.n_missing);
+    let mut rows = surrogates(&table)?;
+    rows.extend(costs(&folder)?);
+    Ok(rows)
+}
+
+/// Plans the campaign with another `draw` in the folder called `name` of `folder`.
+fn plan(folder: &Path, name: &str, draw: &str) -> Result<Plan, String> {
+    let text =
+        CAMPAIGN.replace(DRAW, draw).replace("runs/wake-slices", "runs/validate-wake-slices");
+    let path = folder.join(format!("{name}.toml"));
+    atomic::write(&path, "the campaign's file", text.as_bytes()).map_err(|error| words(&error))?;
+    let planned = campaign::plan(&path, Some(&folder.join(name)));
+    let planned = planned.map_err(|error| words(&error))?;
+    tell!("{}: {} tasks", planned.folder.display(), planned.n_tasks);
+    Ok(planned)
+}
+
+/// Says how far it is.
+struct Lines {
+    told: i64,
+}
+
+impl campaign::Observer for Lines {
+    fn ended(&mut self, progress: &Progress) {
+        let counts = &progress.counts;
+        let tenth = 10 * counts.done / counts.all().max(1);
+        if tenth != self.told {
+            tell!("{tenth}0 % of {} tasks, {:.0} s left", counts.all(), progress.time_left);
+            self.told = tenth;
+        }
+        if let Some(failure) = &progress.failure {
+            tell!("task {} failed: {failure}", progress.task);
+        }
+    }
+}
+
+/// Makes all tasks of what is `planned`.
+fn run(planned: &Plan) -> Result<Ended, String> {
+    let (options, stop) = (RunOptions::default(), AtomicBool::new(false));
+    let ended = campaign::run(&planned.folder, &options, &stop, &mut Lines { told: 0 });
+    let ended = ended.map_err(|error: CampaignError| words(&error))?;
+    match ended.counts.done == ended.counts.all() {
+        true => Ok(ended),
+        false => Err(format!("{}: not all tasks are done: {ended:?}", planned.folder.display())),
+    }
+}
+
+/// Surrogates of all outputs of the table at `path`.
+fn surrogates(path: &Path) -> Result<Vec<Row>, String> {
+    let mut rows = Vec::new();
+    let mut coverages = Vec::new();
+    for (output, name, most, source) in OUTPUTS {
+        let found = trained(path, output)?;
+        found.warnings.iter().for_each(|warning| tell!("{name}: {warning}"));
+        let [n_rows, n_training, n_test] = found.n;
+        let (Some(own), Some(aside)) = (found.on_training, found.on_test) else {
+            return Err(format!("nothing of {n_rows} rows was kept aside"));
+        };
+        let covered = aside.covered_95.map_or(f64::NAN, |coverage| coverage.share);
+        tell!(
+            "{name}: root mean square error {:.2} % of {n_training} rows trained on, {:.2} % of {n_test} kept aside, {covered:.1} % of these in their bands",
+            own.root_mean_square_percentage,
+            aside.root_mean_square_percentage
+        );
+        let what = format!("{name}: root mean square error of what was kept aside");
+        rows.push(row(&what, aside.root_mean_square_percentage, most, AtMost, source));
+        let what = format!("{name}: share of what was kept aside inside its 95 % band");
+        coverages.push(row(&what, covered, COVERED.0, Within(COVERED.1), OWN));
+    }
+    rows.extend(coverages);
+    Ok(rows)
+}
+
+fn trained(path: &Path, output: &str) -> Result<Trained, String> {
+    let of_wind = OF_SECTOR.into_iter().flat_map(|quantity| {
+        SECTORS.into_iter().map(move |sector| format!("T1.sector_{sector}.{quantity}"))
+    });
+    let question = TrainQuestion {
+        file: path.to_owned(),
+        inputs: of_wind.chain(OF_TURBINE.map(str::to_owned)).collect(),
+        output: output.to_owned(),
+        kernel: KernelText::new("se")?,
+        trend: SurrogateTrend::Constant,
+        deviation: None,
+        group: None,
+        estimates_noise: true,
+        split: SPLIT,
+        seed: SEED,
+        n_starts: STARTS,
+        n_inducing: None,
+    };
+    train(&question).map_err(|error| words(&error))
+}
+
+/// What tasks cost, beside what the plan of a few of them foretold.
+fn costs(folder: &Path) -> Result<Vec<Row>, String> {
+    let name = "timed";
+    let there = folder.join(name);
+    if there.exists() {
+        fs::remove_dir_all(&there).map_err(|error| format!("{}: {error}", there.display()))?;
+    }
+    let planned = plan(folder, name, DRAW_TO_TIME)?;
+    let began = Instant::now();
+    let ended = run(&planned)?;
+    let taken = began.elapsed().as_secs_f64();
+    let (Some(foretold), Some(cpu_time)) = (planned.cost.wall_time, planned.cost.cpu_time) else {
+        return Err("the plan tells no time".to_owned());
+    };
+    let of_one = cpu_time / planned.n_tasks as f64;
+    tell!(
+        "{} tasks took {taken:.1} s, {foretold:.1} s were foretold from {} that were made; {of_one:.3} s of CPU time each",
+        ended.n_done,
+        planned.cost.n_sampled
+    );
+    let whole = PUBLISHED_TASKS * of_one / CORES / 3600.0;
+    Ok(vec![
+        Row {
+            unit: "s",
+            ..row(
+                "CPU time of a task of 630 s, loads included, two at a time",
+                of_one,
+                1.0,
+                AtMost,
+                OWN,
+            )
+        },
+        Row {
+            unit: "h",
+            ..row("time of 62 460 such tasks on two cores", whole, 12.0, AtMost, OWN)
+        },
+        row(
+            "120 tasks: time taken over the time foretold, less one",
+            100.0 * (taken / foretold - 1.0),
+            0.0,
+            Within(20.0),
+            OWN,
+        ),
+    ])
+}
+
+fn row(
+    what: &str,
+    measured: f64,
+    expected: f64,
+    tolerance: Tolerance,
+    source: &'static str,
+) -> Row {
+    Row {
+        what: format!("iea-22mw in ten recorded wakes, 8 m/s, {what}"),
+        measured,
+        expected,
+        tolerance,
+        unit: "%",
+        source,
+    }
+}
