@@ -107,7 +107,7 @@ impl Farm {
     /// Makes these `runs` with a `seed`, or takes up what is there of them, and gives their folder: all winds
     /// with the first seed, else those that it changes. Validations share the folders: each makes the runs
     /// that it wants.
-    fn folder(&self, seed: u64, runs: &[&str]) -> Result<PathBuf, String> {
+    pub(crate) fn folder(&self, seed: u64, runs: &[&str]) -> Result<PathBuf, String> {
         let name = |seed: u64| format!("{}-{seed}", self.name);
         // From the current folder, for the case itself may stand elsewhere.
         let here = std::env::current_dir().map_err(|error| error.to_string())?;
@@ -121,6 +121,25 @@ impl Farm {
             overrides.push("sweep.wind.turbulence_intensity=[0.06]".to_owned());
         }
         Ok(summaries_of(self.case, &name(seed), overrides, runs)?.1)
+    }
+
+    /// Makes the open loop in one `wind` with a `seed`, its helix of another `amplitude` (°), and gives its
+    /// folder.
+    pub(crate) fn open_of(
+        &self,
+        wind: FarmWind,
+        seed: u64,
+        amplitude: f64,
+    ) -> Result<PathBuf, String> {
+        let FarmWind { number, shear, intensity } = wind;
+        let overrides = vec![
+            format!("wind.seed={seed}"),
+            format!("run.{OPEN}.control.T1.amplitude_deg={amplitude:.3}"),
+            format!("sweep.wind.shear_exponent=[{shear:?}]"),
+            format!("sweep.wind.turbulence_intensity=[{intensity:?}]"),
+        ];
+        let name = format!("{}-as-much-{number}-{seed}", self.name);
+        Ok(summaries_of(self.case, &name, overrides, &[OPEN])?.1)
     }
 }
 
@@ -190,7 +209,7 @@ fn of_all(of_seeds: &[Changes]) -> Result<Changes, String> {
 }
 
 /// The runs in this `wind`, of the sweep in `folder`.
-fn records(folder: &Path, wind: FarmWind) -> Result<Vec<RunRecords>, String> {
+pub(crate) fn records(folder: &Path, wind: FarmWind) -> Result<Vec<RunRecords>, String> {
     let sweep = read_sweep(folder).map_err(|error| error.to_string())?;
     let sweep = sweep.ok_or_else(|| format!("{} holds no sweep", folder.display()))?;
     for study in &sweep.studies {

@@ -32,6 +32,7 @@ pub mod helix;
 pub mod identification;
 pub mod inflow;
 mod least_squares;
+mod lidar_amplitude;
 pub mod lidar_family;
 pub mod lidar_loop;
 pub mod lidar_table;

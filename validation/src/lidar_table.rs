@@ -6,6 +6,7 @@ use crate::four_winds::{
     AllChanges, CLOSED, FIRST_SEED, FREE, Farm, FarmWind, OPEN, QUANTITIES, RESOLVED, WHOSE, WINDS,
     all_changes, print_changes, series_of, together,
 };
+use crate::lidar_amplitude::beyond_amplitude;
 use crate::lidar_loop::{Asked, designed, identified};
 use crate::row::Tolerance::{AtLeast, AtMost};
 use crate::studies::{Carried, failure, summaries};
@@ -34,9 +35,13 @@ const DECIMATE: usize = 38;
 
 /// Makes a law of a record in resolved flow, open and closed loops with it in four winds, and those in
 /// turbulence with further seeds; prints the table with intervals, and gives the signs of the changes that
-/// the source has as rows, but for those that are nearly none.
+/// the source has as rows, but for those that are nearly none; then the closed loops beside open ones that
+/// pitch as much.
 pub fn lidar_lattice() -> Vec<Row> {
-    let rows = || Ok([law()?.to_vec(), table(&RESOLVED, LATTICE, &SEEDS)?].concat());
+    let rows = || {
+        let (law, table) = (law()?.to_vec(), table(&RESOLVED, LATTICE, &SEEDS)?);
+        Ok([law, table, beyond_amplitude(&RESOLVED, &SEEDS)?].concat())
+    };
     rows().unwrap_or_else(failure)
 }
 

@@ -6,7 +6,7 @@ use crate::row::Tolerance::{self, AtMost, Within};
 use crate::studies::{Carried, failure, folder_of, summaries, words};
 use campaign::{CampaignError, Ended, Plan, Progress, RunOptions};
 use design::SurrogateTrend;
-use design::regression::{KernelText, TrainQuestion, Trained, train};
+use design::regression::{KernelText, TrainQuestion, Trained, ValidateQuestion, train, validate};
 use formats::atomic;
 use std::fs;
 use std::path::Path;
@@ -51,6 +51,8 @@ const OUTPUTS: [(&str, &str, f64, &str); 13] = [
     ("T1.LSSTipMzs.del_m4", "LSSGagMzs", 1.66, SOURCE),
     ("T1.pitch_duty.worst_bearing_load", "PitchBr", 1.5, OWN),
 ];
+/// Records of which a second set of surrogates knows nothing: a helix between two others, and behind three.
+const ASIDE: [&str; 2] = ["wake-slices/helix-3/", "wake-slices-array/helix-4/"];
 /// What a 95 % band of what was kept aside is to hold (%).
 const COVERED: (f64, f64) = (94.0, 4.0);
 /// Share that is trained on (–), seed of the split, starts of each search (–): as the source, and the
@@ -77,6 +79,7 @@ fn made() -> Result<Vec<Row>, String> {
     let collected = collected.map_err(|error| words(&error))?;
     tell!("{} rows, {} tasks are missing", collected.n_rows, collected.n_missing);
     let mut rows = surrogates(&table)?;
+    other_records(&folder, &table)?;
     rows.extend(costs(&folder)?);
     Ok(rows)
 }
@@ -128,7 +131,7 @@ fn surrogates(path: &Path) -> Result<Vec<Row>, String> {
     let mut rows = Vec::new();
     let mut coverages = Vec::new();
     for (output, name, most, source) in OUTPUTS {
-        let found = trained(path, output)?;
+        let found = trained(path, output, SPLIT)?;
         found.warnings.iter().for_each(|warning| tell!("{name}: {warning}"));
         let [n_rows, n_training, n_test] = found.n;
         let (Some(own), Some(aside)) = (found.on_training, found.on_test) else {
@@ -149,7 +152,45 @@ fn surrogates(path: &Path) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-fn trained(path: &Path, output: &str) -> Result<Trained, String> {
+/// Prints what surrogates that know nothing of some records say of these: rows that are kept aside by chance
+/// share their records, and mostly their winds, with rows that are trained on.
+fn other_records(folder: &Path, path: &Path) -> Result<(), String> {
+    let text = atomic::read_text(path, "the table").map_err(|error| words(&error))?;
+    let is_aside = |line: &&str| ASIDE.iter().any(|record| line.contains(record));
+    let mut lines = text.lines();
+    let heading = lines.next().unwrap_or_default();
+    let (aside, known): (Vec<&str>, Vec<&str>) = lines.partition(is_aside);
+    let write = |name: &str, lines: &[&str]| {
+        let path = folder.join(name);
+        let text = [&[heading], lines].concat().join("\n") + "\n";
+        atomic::write(&path, "a table", text.as_bytes()).map_err(|error| words(&error))?;
+        Ok::<_, String>(path)
+    };
+    let (known, other) = (write("known.csv", &known)?, write("aside.csv", &aside)?);
+    let model = folder.join("known.json");
+    for (output, name, ..) in OUTPUTS {
+        let found = trained(&known, output, 1.0)?;
+        found.model.write(&model).map_err(|error| words(&error))?;
+        let question = ValidateQuestion {
+            model: model.clone(),
+            file: other.clone(),
+            deviation: None,
+            group: None,
+        };
+        let held = validate(&question).map_err(|error| words(&error))?;
+        let Some(on) = held.on_table else { return Err("no row is aside".to_owned()) };
+        tell!(
+            "{name}: trained without {}: root mean square error {:.2} % of their {} rows, {:.1} % in their bands",
+            ASIDE.join(" and "),
+            on.root_mean_square_percentage,
+            on.n,
+            on.covered_95.map_or(f64::NAN, |coverage| coverage.share)
+        );
+    }
+    Ok(())
+}
+
+fn trained(path: &Path, output: &str, split: f64) -> Result<Trained, String> {
     let of_wind = OF_SECTOR.into_iter().flat_map(|quantity| {
         SECTORS.into_iter().map(move |sector| format!("T1.sector_{sector}.{quantity}"))
     });
@@ -162,7 +203,7 @@ fn trained(path: &Path, output: &str) -> Result<Trained, String> {
         deviation: None,
         group: None,
         estimates_noise: true,
-        split: SPLIT,
+        split,
         seed: SEED,
         n_starts: STARTS,
         n_inducing: None,
@@ -181,38 +222,27 @@ fn costs(folder: &Path) -> Result<Vec<Row>, String> {
     let began = Instant::now();
     let ended = run(&planned)?;
     let taken = began.elapsed().as_secs_f64();
-    let (Some(foretold), Some(cpu_time)) = (planned.cost.wall_time, planned.cost.cpu_time) else {
+    let Some(foretold) = planned.cost.wall_time else {
         return Err("the plan tells no time".to_owned());
     };
-    let of_one = cpu_time / planned.n_tasks as f64;
+    let of_one = taken * planned.cost.n_workers as f64 / ended.n_done as f64;
     tell!(
-        "{} tasks took {taken:.1} s, {foretold:.1} s were foretold from {} that were made; {of_one:.3} s of CPU time each",
+        "{} tasks, {} at a time, took {taken:.1} s, {foretold:.1} s were foretold from {} that were made",
         ended.n_done,
+        planned.cost.n_workers,
         planned.cost.n_sampled
     );
     let whole = PUBLISHED_TASKS * of_one / CORES / 3600.0;
+    let each = "time of a core for a task of 630 s, loads included, all cores at work, mean of 120";
+    let in_all = "120 tasks: time that they take beyond the time foretold";
+    let beyond = 100.0 * (taken / foretold - 1.0);
     Ok(vec![
-        Row {
-            unit: "s",
-            ..row(
-                "CPU time of a task of 630 s, loads included, two at a time",
-                of_one,
-                1.0,
-                AtMost,
-                OWN,
-            )
-        },
+        Row { unit: "s", ..row(each, of_one, 1.0, AtMost, OWN) },
         Row {
             unit: "h",
             ..row("time of 62 460 such tasks on two cores", whole, 12.0, AtMost, OWN)
         },
-        row(
-            "120 tasks: time taken over the time foretold, less one",
-            100.0 * (taken / foretold - 1.0),
-            0.0,
-            Within(20.0),
-            OWN,
-        ),
+        row(in_all, beyond, 0.0, Within(20.0), OWN),
     ])
 }
 

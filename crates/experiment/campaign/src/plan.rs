@@ -88,7 +88,7 @@ pub fn plan(path: &Path, folder: Option<&Path>) -> Result<Plan, CampaignError> {
     let hashes = task::hashes(&file, &tasks)?;
     check_distinct(&tasks, &hashes)?;
     let threads = threads(&file, &tasks[0])?;
-    let cost = cost(&file, &tasks, &hashes, threads)?;
+    let cost = cost(&file, &folder, (&tasks, &hashes), threads)?;
     let meta = Meta {
         name: file.name.clone(),
         version: VERSION.to_owned(),
@@ -146,12 +146,12 @@ pub(crate) fn n_workers(threads: Option<usize>) -> usize {
     threads.map_or(1, |threads| (cores / threads).max(1))
 }
 
-/// The cost of `tasks`, from some that are timed, chosen by their hashes: so by chance, and the same each
+/// The cost of `tasks` with these `hashes` in `folder`, from some that are timed, chosen by their hashes: so by chance, and the same each
 /// time. First, middle and last would be the corners of all factors.
 fn cost(
     file: &CampaignFile,
-    tasks: &[Task],
-    hashes: &[String],
+    folder: &Path,
+    (tasks, hashes): (&[Task], &[String]),
     threads: Option<usize>,
 ) -> Result<Cost, CampaignError> {
     let mut by_hash: Vec<(&String, &Task)> = hashes.iter().zip(tasks).collect();
@@ -173,7 +173,7 @@ fn cost(
     };
     let longest = times.seconds.iter().copied().reduce(f64::max);
     if longest.is_some_and(|longest| longest <= WHOLE) {
-        let seconds = whole::times(file, &in_turn, threads, n_workers)?;
+        let seconds = whole::times(file, &in_turn, threads, n_workers, folder)?;
         times = Times { n_sampled: seconds.len(), seconds, made_whole: true };
     }
     Ok(spread(&samples, &times, tasks.len(), n_workers, threads.unwrap_or(cores), file.keep))

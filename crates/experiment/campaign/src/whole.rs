@@ -5,6 +5,7 @@ use crate::make;
 use crate::task::{self, Task};
 use formats::FileError;
 use formats::case::CampaignFile;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -15,7 +16,7 @@ use study::{Inputs, Outcome, StudyError};
 const ROUNDS: usize = 3;
 
 /// Wall times (s) of some of `tasks`, the first ones, each made whole and `n_workers` at a time as in the
-/// campaign itself, in a folder that goes.
+/// campaign itself, in a folder that goes, on the disk of the folder `beside`.
 ///
 /// # Errors
 /// [`CampaignError::Sample`] where not one of them can be made.
@@ -24,10 +25,12 @@ pub(crate) fn times(
     tasks: &[&Task],
     threads: Option<usize>,
     n_workers: usize,
+    beside: &Path,
 ) -> Result<Vec<f64>, CampaignError> {
-    let folder = tempfile::tempdir().map_err(|source| {
-        FileError::system("create", "a folder for", Path::new("the tasks to be timed"), source)
-    })?;
+    // On the disk that the campaign will use.
+    let there = beside.ancestors().find(|path| path.is_dir()).unwrap_or(Path::new("."));
+    let folder = tempfile::tempdir_in(there)
+        .map_err(|source| FileError::system("create", "a folder to time tasks", there, source))?;
     let next = AtomicUsize::new(0);
     let made: Mutex<Vec<Made>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
@@ -38,7 +41,9 @@ pub(crate) fn times(
                     let place = next.fetch_add(1, Ordering::Relaxed);
                     let Some(task) = tasks.get(place) else { return };
                     let output = folder.path().join(place.to_string());
-                    let time = timed(file, task, threads, &output, &mut inputs);
+                    let timed = || timed(file, task, threads, &output, &mut inputs);
+                    // As in the campaign, where such a task is failed and the others go on.
+                    let Ok(time) = catch_unwind(AssertUnwindSafe(timed)) else { continue };
                     let is_counted = round > 0 || tasks.len() <= n_workers;
                     let made_one = Made { task: place, time, is_counted };
                     made.lock().unwrap_or_else(PoisonError::into_inner).push(made_one);

@@ -14,9 +14,9 @@ use formats::records::{PrecursorFolder, RunFolder, read_manifest};
 use formats::turbulence_box;
 use small::{HALFWAY, STOP, written};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use study::precursor::{PrecursorOptions, PrecursorOutcome, precursor};
 use study::{Outcome, Outputs, Prepared, Silent, StudyError, StudyOptions};
 use tempfile::TempDir;
@@ -57,16 +57,43 @@ name = "baseline"
 crosswind_diameters = [1.0]
 "#;
 
-/// The case beside the folder of its precursor.
+/// Files of a folder, by their places in it.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
+/// The case beside the folder of its precursor, which is made once.
 fn study() -> TempDir {
-    let folder = written(CASE);
-    let case = folder.path().join("layer.toml");
-    fs::write(&case, PRECURSOR).expect("a file");
-    let output = Some(folder.path().join("layer"));
-    let options = PrecursorOptions { case, output, ..PrecursorOptions::default() };
-    let outcome = precursor(&options, &AtomicBool::new(false), &mut Silent);
-    assert!(matches!(outcome, Ok(PrecursorOutcome::Done { .. })), "{outcome:?}");
+    static MADE: OnceLock<Files> = OnceLock::new();
+    let files = MADE.get_or_init(|| {
+        let folder = written(CASE);
+        let case = folder.path().join("layer.toml");
+        fs::write(&case, PRECURSOR).expect("a file");
+        let output = Some(folder.path().join("layer"));
+        let options = PrecursorOptions { case, output, ..PrecursorOptions::default() };
+        let outcome = precursor(&options, &AtomicBool::new(false), &mut Silent);
+        assert!(matches!(outcome, Ok(PrecursorOutcome::Done { .. })), "{outcome:?}");
+        let mut files = Vec::new();
+        collect(folder.path(), Path::new(""), &mut files);
+        files
+    });
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (place, bytes) in files {
+        let path = folder.path().join(place);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, bytes).expect("a file");
+    }
     folder
+}
+
+/// Adds all files of `folder`, whose place is `place`, to `files`.
+fn collect(folder: &Path, place: &Path, files: &mut Files) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let place = place.join(path.file_name().expect("a name"));
+        match path.is_dir() {
+            true => collect(&path, &place, files),
+            false => files.push((place, fs::read(&path).expect("a file"))),
+        }
+    }
 }
 
 fn prepared(folder: &Path, overrides: &[&str]) -> Result<Prepared, StudyError> {

@@ -5,10 +5,11 @@ use crate::air;
 use crate::prepared::Prepared;
 use basis::records::Sector;
 use farm::solvers::WindSource;
-use flow::inflow::{Disc, PlaneMeans};
+use flow::inflow::{Disc, PlaneGrid, PlaneMeans};
+use std::ops::Range;
 
-/// The wind that comes to the rotor of turbine number `index` of `setup`, over the whole block of which its
-/// wind is cut; none where it is cut of nothing.
+/// The wind that comes to the rotor of turbine number `index` of `setup` while it is analysed; none where it
+/// is cut of nothing.
 ///
 /// # Errors
 /// [`StudyError`] where the record cannot be read any more.
@@ -20,6 +21,18 @@ pub(super) fn of(setup: &Prepared, index: usize) -> Result<Vec<Sector>, StudyErr
     let (foot, machine) = (setup.plan.positions[index], &setup.models[index].definition);
     let disc =
         Disc { y: foot.y, z: foot.z + machine.rotor.hub_height, radius: machine.rotor_radius() };
-    let means = PlaneMeans::of(air::planes(setup)?.as_mut(), case.wind.speed)?;
+    let mut planes = air::planes(setup)?;
+    let steps = passing(&planes.grid(), foot.x, [case.time.spin_up, case.time.duration]);
+    let means = PlaneMeans::of_steps(planes.as_mut(), case.wind.speed, steps)?;
     Ok(means.sectors(disc)?.to_vec())
+}
+
+/// The planes of a record on `grid` that pass a rotor at `x` (m) between these times (s), as records are laid
+/// around rotors: one that does not repeat begins half its width upwind.
+fn passing(grid: &PlaneGrid, x: f64, [from, to]: [f64; 2]) -> Range<usize> {
+    let [right, left] = grid.across();
+    let origin = if grid.repeats { 0.0 } else { 0.5 * (left - right) };
+    let before = (origin - x) / grid.speed;
+    let [first, last] = [from, to].map(|time| (time + before) / grid.interval);
+    first.ceil() as usize..last.floor() as usize + 1
 }

@@ -139,7 +139,7 @@ pub enum CutError {
     },
     /// A window in which the wind does not blow downwind.
     #[error(
-        "the mean wind in the middle of the cut at hub height is {speed:.3} m/s, which carries no planes downwind: take another window or shift"
+        "the mean wind over the cut at hub height is {speed:.3} m/s, which carries no planes downwind: take another window or shift"
     )]
     Calm {
         /// Mean of u there (m/s).
@@ -170,8 +170,8 @@ impl CutError {
 ///
 /// Planes are those of the record whose times lie in the window; the first is the first at or after its
 /// begin. They do not repeat, whatever the record does. They are carried along with the mean wind at hub
-/// height in the middle of the cut. Below the record's lowest row the wind of that row blows. Temperature is
-/// left out.
+/// height over the width of the cut: in the middle of a wake alone it is slower than what a rotor meets.
+/// Below the record's lowest row the wind of that row blows. Temperature is left out.
 pub struct CutPlanes {
     planes: Box<dyn Planes>,
     grid: PlaneGrid,
@@ -216,21 +216,20 @@ impl CutPlanes {
         };
         let plane = vec![[0.0; 3]; record.n_y * record.n_z];
         let mut found = Self { planes, grid, first, columns, rows, n_y: record.n_y, plane };
-        let middle = found.columns.first - grid.first[0];
-        found.grid.speed = found.mean_speed(&record, middle, hub_height)?;
+        found.grid.speed = found.mean_speed(&record, hub_height)?;
         Ok(found)
     }
 
-    /// Mean of u (m/s) over the window at `y` (m) of the record and `height` (m).
-    fn mean_speed(&mut self, record: &PlaneGrid, y: f64, height: f64) -> Result<f64, CutError> {
-        let column = between(record.n_y, record.first[0], record.spacing[0], y);
+    /// Mean of u (m/s) over the window and all columns at `height` (m).
+    fn mean_speed(&mut self, record: &PlaneGrid, height: f64) -> Result<f64, CutError> {
         let row = between(record.n_z, record.first[1], record.spacing[1], height);
         let mut sum = 0.0;
         for step in 0..self.grid.n_steps {
             self.planes.read(self.first + step, &mut self.plane)?;
-            sum += f64::from(self.at(column, row)[0]);
+            let columns = self.columns.between.iter();
+            sum += columns.map(|column| f64::from(self.at(*column, row)[0])).sum::<f64>();
         }
-        let speed = sum / self.grid.n_steps as f64;
+        let speed = sum / (self.grid.n_steps * self.grid.n_y) as f64;
         if speed > 0.0 { Ok(speed) } else { Err(CutError::Calm { speed }) }
     }
 

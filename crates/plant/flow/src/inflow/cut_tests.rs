@@ -99,6 +99,16 @@ fn on_points_of_the_record_a_moving_pattern_is_the_record_bit_for_bit() {
     }
 }
 
+/// A wake, slower in its middle: what meets a rotor there is carried by its mean, not by its slowest wind.
+#[test]
+fn planes_are_carried_with_the_mean_over_the_width() {
+    let wake = |_: f64, y: f64, _: f64| [8.0 - 1e-4 * (170.0_f64.powi(2) - y * y), 0.0, 0.0];
+    let square = (-17..=17).map(|column| f64::from(100 * column * column)).sum::<f64>() / 35.0;
+    let expected = 8.0 - 1e-4 * (170.0_f64.powi(2) - square);
+    let found = cut_of(wake, CUT).unwrap().grid().speed;
+    assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+}
+
 #[test]
 fn a_linear_shear_is_kept_on_any_points() {
     for (spacing, width, height, shift) in

@@ -3,6 +3,7 @@
 use super::{InflowError, PlaneGrid, Planes, positive};
 use basis::Vector3;
 use basis::records::Sector;
+use std::ops::Range;
 
 /// Names of the quarters, in the order of the azimuth: looking downwind.
 pub const SECTOR_NAMES: [&str; 4] = ["up", "right", "down", "left"];
@@ -44,9 +45,24 @@ impl PlaneMeans {
     /// [`InflowError::Plane`] for planes that cannot be had, [`InflowError::Setting`] for a free stream that
     /// is not positive.
     pub fn of(planes: &mut dyn Planes, free_stream: f64) -> Result<Self, InflowError> {
+        let n_steps = planes.grid().n_steps;
+        Self::of_steps(planes, free_stream, 0..n_steps)
+    }
+
+    /// The same of these `steps` of `planes` alone, as many as there are.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of); [`InflowError::Setting`] where none of them is there.
+    pub fn of_steps(
+        planes: &mut dyn Planes,
+        free_stream: f64,
+        steps: Range<usize>,
+    ) -> Result<Self, InflowError> {
         positive("free stream (m/s)", free_stream)?;
         let grid = planes.grid();
-        let [speeds, intensities] = fields(planes, free_stream)?;
+        let steps = steps.start..steps.end.min(grid.n_steps);
+        positive("number of planes", steps.len() as f64)?;
+        let [speeds, intensities] = fields(planes, free_stream, steps)?;
         Ok(Self { grid, speeds, intensities })
     }
 
@@ -87,15 +103,20 @@ fn check(grid: &PlaneGrid, disc: Disc) -> Result<(), InflowError> {
     Ok(())
 }
 
-/// Mean of u (m/s) and turbulence intensity over `free_stream` (–) at each point of `planes`.
-fn fields(planes: &mut dyn Planes, free_stream: f64) -> Result<[Vec<f64>; 2], InflowError> {
+/// Mean of u (m/s) and turbulence intensity over `free_stream` (–) at each point of these `steps` of `planes`.
+fn fields(
+    planes: &mut dyn Planes,
+    free_stream: f64,
+    steps: Range<usize>,
+) -> Result<[Vec<f64>; 2], InflowError> {
     let grid = planes.grid();
     let n_points = grid.n_y * grid.n_z;
     let (mut first, mut plane) = (vec![[0.0_f32; 3]; n_points], vec![[0.0_f32; 3]; n_points]);
-    planes.read(0, &mut first)?;
+    planes.read(steps.start, &mut first)?;
     // Of differences from the first plane: squares of the wind itself would cancel.
     let mut sums = vec![[[0.0_f64; 2]; 3]; n_points];
-    for step in 1..grid.n_steps {
+    let n_steps = steps.len();
+    for step in steps.skip(1) {
         planes.read(step, &mut plane)?;
         for (sums, (value, first)) in sums.iter_mut().zip(plane.iter().zip(&first)) {
             for (sums, (value, first)) in sums.iter_mut().zip(value.iter().zip(first)) {
@@ -104,7 +125,7 @@ fn fields(planes: &mut dyn Planes, free_stream: f64) -> Result<[Vec<f64>; 2], In
             }
         }
     }
-    let n = grid.n_steps as f64;
+    let n = n_steps as f64;
     let speeds = sums.iter().zip(&first).map(|(sums, first)| f64::from(first[0]) + sums[0][0] / n);
     let variance = |[sum, squares]: &[f64; 2]| (squares / n - (sum / n).powi(2)).max(0.0);
     let intensity =

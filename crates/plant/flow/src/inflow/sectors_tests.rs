@@ -98,3 +98,22 @@ fn a_disc_beyond_the_planes_is_refused() {
     assert!(sectors(&mut Known(waves), Disc { radius: 0.0, ..DISC }, 8.0).is_err());
     assert!(sectors(&mut Known(waves), DISC, 0.0).is_err());
 }
+
+/// Planes after the first half are a metre per second faster.
+#[test]
+fn some_planes_alone_are_what_passed_meanwhile() {
+    let faster = |step: f64, _: f64, _: f64| [if step < 40.0 { 8.0 } else { 9.0 }, 0.0, 0.0];
+    let mut planes = Known(faster);
+    let n_steps = planes.grid().n_steps;
+    assert!(n_steps > 42);
+    let of = |planes: &mut Known, steps: std::ops::Range<usize>| {
+        PlaneMeans::of_steps(planes, 8.0, steps).map(|means| means.sectors(DISC).unwrap())
+    };
+    for (steps, speed) in [(0..40, 8.0), (40..n_steps + 9, 9.0), (38..42, 8.5)] {
+        let found = of(&mut planes, steps).unwrap();
+        assert!(found.iter().all(|sector| (sector.wind_speed - speed).abs() < 1e-6), "{found:?}");
+        let intensity = if speed == 8.5 { 0.5 / 3.0_f64.sqrt() / 8.0 } else { 0.0 };
+        assert!((found[0].turbulence_intensity - intensity).abs() < 1e-7, "{found:?}");
+    }
+    assert!(of(&mut planes, n_steps..n_steps + 5).is_err());
+}
