@@ -13,7 +13,8 @@ import sys
 
 import numpy as np
 
-SECTORS = [f"sector_{side}.{what}" for what in ("wind_speed", "turbulence_intensity") for side in ("up", "right", "down", "left")]
+SIDES = ("up", "right", "down", "left")
+INPUTS = [f"sector_{side}.{what}" for what in ("wind_speed", "turbulence_intensity") for side in SIDES] + ["yaw_deg", "amplitude_deg"]
 
 
 class Surrogate:
@@ -26,9 +27,8 @@ class Surrogate:
         self.output_names = [model["output"]["name"]]
         self.n_outputs = 1
         self.points = np.array(model["points"])
-        ours = [name.split(".", 1)[-1] for name in self.input_names[:8]]
-        if ours != SECTORS:
-            sys.exit(f"{path}: the first inputs are {ours}; train with {SECTORS}")
+        if not all(name.endswith(wanted) for name, wanted in zip(self.input_names, INPUTS, strict=True)):
+            sys.exit(f"{path}: its inputs are {self.input_names}; train with {INPUTS}, in this order")
 
     def covariance(self, x):
         total = 0.0
@@ -52,17 +52,20 @@ class Surrogate:
 if __name__ == "__main__":
     from py_wake.deficit_models import NiayifarGaussianDeficit
     from py_wake.site import UniformSite
+    from py_wake.site.shear import PowerShear
     from py_wake.turbulence_models import CrespoHernandez
-    from py_wake.wind_farm_models import PropagateDownwind
     from py_wake.wind_turbines.generic_wind_turbines import GenericWindTurbine
+    from wind_farm_loads.py_wake import PropagateDownwindNoSelfInduction
     from wind_farm_loads.tool_agnostic import compute_sector_average, predict_loads_sector_average
 
     surrogates = {model.output_names[0]: model for model in map(Surrogate, sys.argv[1:])}
     diameter = 284.0
     turbine = GenericWindTurbine("IEA 22 MW", diameter=diameter, hub_height=170.0, power_norm=22000.0)
-    farm = PropagateDownwind(UniformSite(ti=0.04), turbine, NiayifarGaussianDeficit(), turbulenceModel=CrespoHernandez())
+    # Shear as where the surrogates were trained; a rotor's own wake is left out on its own disc.
+    site = UniformSite(ti=0.04, shear=PowerShear(h_ref=170.0, alpha=0.1))
+    farm = PropagateDownwindNoSelfInduction(site, turbine, NiayifarGaussianDeficit(), turbulenceModel=CrespoHernandez())
     flow = farm([0.0, 5.0 * diameter], [0.0, 0.0], wd=np.arange(260.0, 281.0, 2.0), ws=[8.0], yaw=0.0, tilt=0.0)
     sectors = compute_sector_average(flow, radius=10, n_azimuth_per_sector=5, align_in_tilt=False)
     yaw, amplitude = 0.0, 0.0
     loads = predict_loads_sector_average(surrogates, sectors, yaw, amplitude, ti_in_percent=False)
-    print(loads.sel(wt=1, ws=8.0).to_pandas().round(0))
+    print(loads.sel(ws=8.0).stack(case=["wt", "wd"]).T.to_pandas().round(0))

@@ -5,6 +5,7 @@ use crate::checkpoint::CheckpointProblem;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
 /// Bytes gathered before the system is asked to write them.
@@ -225,7 +226,10 @@ pub fn check_folder(folder: &Path) -> Result<(), FileError> {
         let (path, source) = (folder.to_owned(), ErrorKind::NotADirectory.into());
         return Err(FileError::System { verb: "write", what, path, fix, source });
     }
-    let probe = beside::beside(&there.join("probe"), beside::PART);
+    // Threads of one process look at one folder at the same time: each has a probe of its own.
+    static PROBES: AtomicU64 = AtomicU64::new(0);
+    let number = PROBES.fetch_add(1, Ordering::Relaxed);
+    let probe = beside::beside(&there.join(format!("probe-{number}")), beside::PART);
     File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(refused)
 }
 
@@ -325,6 +329,18 @@ mod tests {
         write(&path, "the summary", b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["summary.json"]);
+    }
+
+    #[test]
+    fn threads_look_at_one_folder_at_the_same_time() {
+        let folder = tempfile::tempdir().unwrap();
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let path = folder.path().join(format!("tasks/{thread}"));
+                scope.spawn(move || (0..500).for_each(|_| check_folder(&path).unwrap()));
+            }
+        });
+        assert!(names(folder.path()).is_empty());
     }
 
     #[test]

@@ -20,11 +20,14 @@ fn cells(first_cell: [usize; 3], n_cells: [usize; 3]) -> Refinement {
     Refinement { first_cell, n_cells, within: Vec::new() }
 }
 
+/// A lattice of `settings` with `boxes` in it, on one thread where they name no number: several of these small
+/// ones go on side by side.
 fn refined(
-    settings: LatticeSettings,
+    mut settings: LatticeSettings,
     boxes: &[Refinement],
     wind: impl Fn(f64, Vector3) -> Vector3 + Send + Sync + 'static,
 ) -> Refined {
+    settings.threads.get_or_insert(1);
     Refined::new(settings, boxes, Arc::new(Wind(wind))).expect("sound settings")
 }
 

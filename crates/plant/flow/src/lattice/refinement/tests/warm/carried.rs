@@ -63,6 +63,7 @@ fn tell(air: &Refined) -> Told {
 /// The blob after `duration` (s), on cells of a metre with `boxes`, or of half a metre.
 fn carried(halved: bool, boxes: &[Refinement], duration: f64) -> [Told; 2] {
     let mut coarse = periodic_box([64, 24, 20], 1e-6);
+    coarse.threads = Some(1);
     coarse.atmosphere = Some(Atmosphere { gravity: 0.0, ..Atmosphere::new(300.0) });
     let settings = if halved { fine(&coarse) } else { coarse };
     let spacing = settings.spacing;

@@ -6,7 +6,6 @@ use super::*;
 fn over_ground(heating: Heating) -> LatticeSettings {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [20, 16, 12], 0.1, 8.0);
     (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
-    settings.threads = Some(2);
     settings.ground = Ground::WallStress { roughness_length: 0.1 };
     settings.atmosphere = Some(Atmosphere {
         heating,

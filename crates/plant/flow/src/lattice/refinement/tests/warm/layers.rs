@@ -6,7 +6,6 @@ use super::*;
 fn layered(wind: Vector3, reference: Reference) -> Refined {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [18, 14, 16], 0.1, 8.0);
     (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
-    settings.threads = Some(2);
     settings.atmosphere = Some(Atmosphere {
         temperature: vec![[0.0, 290.0], [55.0, 290.5], [88.0, 294.0], [160.0, 295.0]],
         driving: Driving::Geostrophic([wind.x, wind.y]),
@@ -45,7 +44,6 @@ fn stirred(stencil: Stencil, steep: f64) -> Refined {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [24, 20, 16], 0.2, 5.0);
     (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
     settings.stencil = stencil;
-    settings.threads = Some(2);
     settings.atmosphere = Some(Atmosphere {
         temperature: vec![[0.0, 291.0], [60.0, 291.0], [100.0, 291.0 + steep]],
         perturbation: Some(Perturbation { below: 160.0, amplitude: 1.0, seed: 5 }),

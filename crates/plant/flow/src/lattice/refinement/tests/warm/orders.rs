@@ -77,7 +77,7 @@ fn errors(carried: Carried, duration: f64, boxed: bool) -> [[f64; 3]; 2] {
         (first[carried.across], size[carried.across]) = (0, 2);
         let mut settings = periodic_box(n_cells, 1e-6);
         (settings.spacing, settings.interval) = (spacing, spacing);
-        (settings.origin, settings.threads) = (Vector3::ZERO, Some(2));
+        (settings.origin, settings.threads) = (Vector3::ZERO, Some(1));
         settings.atmosphere = Some(Atmosphere {
             gravity: 0.0,
             coriolis: carried.turning,

@@ -163,7 +163,6 @@ fn statistics_of_a_box_are_those_of_its_own_cells() {
     let linear = |x: Vector3| 290.0 + 0.05 * x.z;
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [18, 14, 16], 0.1, 8.0);
     (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
-    settings.threads = Some(2);
     settings.atmosphere = Some(Atmosphere {
         temperature: vec![[0.0, 290.0], [160.0, 298.0]],
         ..Atmosphere::new(290.0)

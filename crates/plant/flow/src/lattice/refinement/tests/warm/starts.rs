@@ -23,8 +23,7 @@ impl<F: Fn(Vector3) -> f64 + Send + Sync> Inflow for Told<F> {
 /// another that rise through an inversion.
 fn told(wind: Vector3, boxes: bool, warmth: fn(Vector3) -> f64) -> Refined {
     let mut settings = LatticeSettings::new(Vector3::ZERO, 10.0, [18, 14, 16], 0.1, 8.0);
-    (settings.ends, settings.sides) = (Ends::Periodic, Sides::Periodic);
-    settings.threads = Some(2);
+    (settings.ends, settings.sides, settings.threads) = (Ends::Periodic, Sides::Periodic, Some(1));
     settings.atmosphere = Some(Atmosphere {
         driving: Driving::Geostrophic([wind.x, wind.y]),
         ..Atmosphere::new(290.0)
