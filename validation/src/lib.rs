@@ -52,7 +52,6 @@ pub mod structure;
 mod studies;
 pub mod synthesis;
 pub mod tuning;
-pub mod tuning_array;
 pub mod tunnel;
 pub mod wake_analysis;
 

@@ -1,4 +1,4 @@
-//! What the lidar's loop gives beyond a larger helix: the closed loop beside an open one that pitches as much.
+//! What the lidar's loop gives beyond a larger helix: the closed loop beside an open one of as much pitch.
 
 use crate::Row;
 use crate::four_winds::{
@@ -9,8 +9,8 @@ use crate::row::Tolerance::AtLeast;
 use analysis::statistics::mean;
 use std::path::Path;
 
-/// Where the expected sign comes from: the closed loop is to gain by where the wake stands. The source has +0.2
-/// and +0.4 %, over a helix of 3° alone.
+/// Where the expected sign comes from: the closed loop is to gain by where the wake stands. The source has
+/// +0.2 and +0.4 %, over a helix of 3° alone.
 const OWN: &str = "this program's claim: the source compares with a helix of 3° alone";
 /// Pitch of the first turbine's blades as it is commanded: actuators follow both loops alike.
 const PITCH: [&str; 3] = ["T1.PitchCmd1", "T1.PitchCmd2", "T1.PitchCmd3"];

@@ -1,5 +1,5 @@
-//! A database of loads in recorded wakes, and surrogates of it: what they leave of what was kept aside, beside
-//! a published table, and what the database costs beside what was foretold.
+//! A database of loads in recorded wakes, and surrogates of it: what they leave of what was kept aside,
+//! beside a published table, and what the database costs beside what was foretold.
 
 use crate::Row;
 use crate::row::Tolerance::{self, AtMost, Within};

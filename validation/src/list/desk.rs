@@ -1,6 +1,6 @@
 //! Validations of what is learnt from many simulations: databases of loads, tunings.
 
-use crate::{Cost, Validation, load_database, tuning_array};
+use crate::{Cost, Validation, load_database};
 
 pub(super) const LOAD_DATABASE: Validation = Validation {
     name: "load-database",
@@ -10,14 +10,4 @@ pub(super) const LOAD_DATABASE: Validation = Validation {
     pictures: None,
     page: "load-database",
     recorded: include_str!("../../recorded/load-database.toml"),
-};
-
-pub(super) const TUNING_ARRAY: Validation = Validation {
-    name: "tuning-array",
-    about: "tuning of a helix in either sense on two turbines in resolved flow from twenty runs at most, beside a published optimum, and what a plain grid takes for the same",
-    cost: Cost::Minutes(60),
-    run: tuning_array::tuning_array,
-    pictures: None,
-    page: "tuning",
-    recorded: include_str!("../../recorded/tuning-array.toml"),
 };

@@ -77,7 +77,7 @@ fn power(folder: &Path) -> f64 {
 
 /// Mean speed at the hub of a rotor `shift` (m) to the left of the middle of the slice at `path`.
 fn speed(path: &Path, shift: f64) -> f64 {
-    let cut = Cut { width: Some(100.0), shift, ..Cut::default() };
+    let cut = Cut { width: Some(20.0), shift, ..Cut::default() };
     let planes = turbulence_box::open(path).expect("a slice");
     CutPlanes::new(planes, &cut, 90.0).expect("a part").grid().speed
 }

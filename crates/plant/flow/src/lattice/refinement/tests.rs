@@ -20,8 +20,8 @@ fn cells(first_cell: [usize; 3], n_cells: [usize; 3]) -> Refinement {
     Refinement { first_cell, n_cells, within: Vec::new() }
 }
 
-/// A lattice of `settings` with `boxes` in it, on one thread where they name no number: several of these small
-/// ones go on side by side.
+/// A lattice of `settings` with `boxes` in it, on one thread where they name no number: several of these
+/// small ones go on side by side.
 fn refined(
     mut settings: LatticeSettings,
     boxes: &[Refinement],
