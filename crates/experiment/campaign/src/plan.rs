@@ -146,8 +146,8 @@ pub(crate) fn n_workers(threads: Option<usize>) -> usize {
     threads.map_or(1, |threads| (cores / threads).max(1))
 }
 
-/// The cost of `tasks` with these `hashes` in `folder`, from some that are timed, chosen by their hashes: so by
-/// chance, and the same each time. First, middle and last would be the corners of all factors.
+/// The cost of `tasks` with these `hashes` in `folder`, from some that are timed, chosen by their hashes: so
+/// by chance, and the same each time. First, middle and last would be the corners of all factors.
 fn cost(
     file: &CampaignFile,
     folder: &Path,

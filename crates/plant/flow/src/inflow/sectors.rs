@@ -103,7 +103,8 @@ fn check(grid: &PlaneGrid, disc: Disc) -> Result<(), InflowError> {
     Ok(())
 }
 
-/// Mean of u (m/s) and turbulence intensity over `free_stream` (–) at each point of `planes`, of these `steps`.
+/// Mean of u (m/s) and turbulence intensity over `free_stream` (–) at each point of these `steps` of
+/// `planes`.
 fn fields(
     planes: &mut dyn Planes,
     free_stream: f64,
