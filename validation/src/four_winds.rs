@@ -146,11 +146,13 @@ impl Farm {
 /// The channels that are compared over the analysed time of `run` in this `wind`, one of the sweep in
 /// `folder`; prints its power.
 pub(crate) fn series_of(folder: &Path, wind: FarmWind, run: &str) -> Result<Series, String> {
-    let runs = records(folder, wind)?;
-    let found = runs.iter().find(|records| records.summary.run == run);
-    let found = found.ok_or_else(|| format!("wind {}: there is no run {run}", wind.number))?;
-    print_power(wind, found);
-    analysed(found)
+    let found = records_of(folder, wind, run)?;
+    print_power(wind, &found);
+    let channels: Vec<String> = QUANTITIES
+        .into_iter()
+        .flat_map(|(_, channel, _)| ["T1", "T2"].map(|turbine| format!("{turbine}.{channel}")))
+        .collect();
+    analysed(&found, &channels)
 }
 
 /// How all [`QUANTITIES`] change from `before` to `now`.
@@ -208,8 +210,15 @@ fn of_all(of_seeds: &[Changes]) -> Result<Changes, String> {
     Ok(all)
 }
 
+/// What `run` left in this `wind`, of the sweep in `folder`.
+pub(crate) fn records_of(folder: &Path, wind: FarmWind, run: &str) -> Result<RunRecords, String> {
+    let mut runs = records(folder, wind)?.into_iter();
+    let found = runs.find(|records| records.summary.run == run);
+    found.ok_or_else(|| format!("wind {}: there is no run {run}", wind.number))
+}
+
 /// The runs in this `wind`, of the sweep in `folder`.
-pub(crate) fn records(folder: &Path, wind: FarmWind) -> Result<Vec<RunRecords>, String> {
+fn records(folder: &Path, wind: FarmWind) -> Result<Vec<RunRecords>, String> {
     let sweep = read_sweep(folder).map_err(|error| error.to_string())?;
     let sweep = sweep.ok_or_else(|| format!("{} holds no sweep", folder.display()))?;
     for study in &sweep.studies {
@@ -227,12 +236,8 @@ pub(crate) fn records(folder: &Path, wind: FarmWind) -> Result<Vec<RunRecords>, 
     Err(format!("no study with shear {shear} and turbulence intensity {intensity}"))
 }
 
-/// The channels that are compared, over the analysed time of `run`.
-fn analysed(run: &RunRecords) -> Result<Series, String> {
-    let channels: Vec<String> = QUANTITIES
-        .into_iter()
-        .flat_map(|(_, channel, _)| ["T1", "T2"].map(|turbine| format!("{turbine}.{channel}")))
-        .collect();
+/// Time and these `channels` over the analysed time of `run`.
+pub(crate) fn analysed(run: &RunRecords, channels: &[String]) -> Result<Series, String> {
     let wanted = |name: &str| name == "Time" || channels.iter().any(|channel| channel == name);
     let mut series = run.series.read(wanted).map_err(|error| error.to_string())?;
     let spin_up = run.summary.conditions.spin_up;

@@ -2,8 +2,8 @@
 
 use crate::Row;
 use crate::four_winds::{
-    AllChanges, CLOSED, Farm, FarmWind, OPEN, WINDS, all_changes, print_changes, records,
-    series_of, together,
+    AllChanges, CLOSED, Farm, FarmWind, OPEN, WINDS, all_changes, analysed, print_changes,
+    records_of, series_of, together,
 };
 use crate::row::Tolerance::AtLeast;
 use analysis::statistics::mean;
@@ -69,20 +69,14 @@ fn of_seed(farm: &Farm, wind: FarmWind, seed: u64) -> Result<AllChanges, String>
 /// Amplitude (°) of a steady helix whose blades pitch as much as those of `run`, in the mean square and about
 /// what they all do.
 fn amplitude(folder: &Path, wind: FarmWind, run: &str) -> Result<f64, String> {
-    let runs = records(folder, wind)?;
-    let found = runs.iter().find(|records| records.summary.run == run);
-    let found = found.ok_or_else(|| format!("wind {}: there is no run {run}", wind.number))?;
-    let series = found.series.read(|name: &str| name == "Time" || PITCH.contains(&name));
-    let series = series.map_err(|error| error.to_string())?;
+    let series = analysed(&records_of(folder, wind, run)?, &PITCH.map(str::to_owned))?;
     let column = |name| series.column(name).ok_or_else(|| format!("{run}: there is no {name}"));
-    let time = column("Time")?;
-    let first = time.partition_point(|time| *time <= found.summary.conditions.spin_up);
     let pitch = [column(PITCH[0])?, column(PITCH[1])?, column(PITCH[2])?];
     let mean_square = |row: usize| {
         let pitch = pitch.map(|column| column[row]);
         let all = pitch.iter().sum::<f64>() / 3.0;
         pitch.map(|one| (one - all).powi(2)).iter().sum::<f64>() / 3.0
     };
-    let squares: Vec<f64> = (first..time.len()).map(mean_square).collect();
+    let squares: Vec<f64> = (0..pitch[0].len()).map(mean_square).collect();
     Ok((2.0 * mean(&squares)).sqrt().to_degrees())
 }

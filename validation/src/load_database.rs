@@ -3,10 +3,11 @@
 
 use crate::Row;
 use crate::row::Tolerance::{self, AtMost, Within};
-use crate::studies::{Carried, failure, folder_of, summaries, words};
-use campaign::{CampaignError, Ended, Plan, Progress, RunOptions};
+use crate::studies::{Carried, Lines, failure, folder_of, summaries, words};
+use campaign::{CampaignError, Ended, Plan, RunOptions};
 use design::SurrogateTrend;
 use design::regression::{KernelText, TrainQuestion, Trained, ValidateQuestion, train, validate};
+use flow::inflow::SECTOR_NAMES;
 use formats::atomic;
 use std::fs;
 use std::path::Path;
@@ -30,8 +31,7 @@ const BLOCK: &str = "wind.cut.block";
 const PUBLISHED_TASKS: f64 = 62_460.0;
 const CORES: f64 = 2.0;
 
-/// What surrogates know of the wind, on each of these quarters of the rotor, and of the turbine.
-const SECTORS: [&str; 4] = ["up", "right", "down", "left"];
+/// What surrogates know of the wind, on each of the quarters of the rotor, and of the turbine.
 const OF_SECTOR: [&str; 2] = ["wind_speed", "turbulence_intensity"];
 const OF_TURBINE: [&str; 2] = ["turbine.T1.yaw_deg", "control.T1.amplitude_deg"];
 
@@ -96,29 +96,10 @@ fn plan(folder: &Path, name: &str, draw: &str) -> Result<Plan, String> {
     Ok(planned)
 }
 
-/// Says how far it is.
-struct Lines {
-    told: i64,
-}
-
-impl campaign::Observer for Lines {
-    fn ended(&mut self, progress: &Progress) {
-        let counts = &progress.counts;
-        let tenth = 10 * counts.done / counts.all().max(1);
-        if tenth != self.told {
-            tell!("{tenth}0 % of {} tasks, {:.0} s left", counts.all(), progress.time_left);
-            self.told = tenth;
-        }
-        if let Some(failure) = &progress.failure {
-            tell!("task {} failed: {failure}", progress.task);
-        }
-    }
-}
-
 /// Makes all tasks of what is `planned`.
 fn run(planned: &Plan) -> Result<Ended, String> {
     let (options, stop) = (RunOptions::default(), AtomicBool::new(false));
-    let ended = campaign::run(&planned.folder, &options, &stop, &mut Lines { told: 0 });
+    let ended = campaign::run(&planned.folder, &options, &stop, &mut Lines::default());
     let ended = ended.map_err(|error: CampaignError| words(&error))?;
     match ended.counts.done == ended.counts.all() {
         true => Ok(ended),
@@ -192,7 +173,7 @@ fn other_records(folder: &Path, path: &Path) -> Result<(), String> {
 
 fn trained(path: &Path, output: &str, split: f64) -> Result<Trained, String> {
     let of_wind = OF_SECTOR.into_iter().flat_map(|quantity| {
-        SECTORS.into_iter().map(move |sector| format!("T1.sector_{sector}.{quantity}"))
+        SECTOR_NAMES.into_iter().map(move |sector| format!("T1.sector_{sector}.{quantity}"))
     });
     let question = TrainQuestion {
         file: path.to_owned(),

@@ -55,6 +55,20 @@ impl PrecursorObserver for Lines {
     }
 }
 
+impl campaign::Observer for Lines {
+    fn ended(&mut self, progress: &campaign::Progress) {
+        let counts = &progress.counts;
+        let line = format!("{}0 %", 10 * counts.done / counts.all().max(1));
+        if line != self.last {
+            tell!("{line} of {} tasks, {:.0} s left", counts.all(), progress.time_left);
+            self.last = line;
+        }
+        if let Some(failure) = &progress.failure {
+            tell!("task {} failed: {failure}", progress.task);
+        }
+    }
+}
+
 /// Name of the file in a study's folder that tells which build of the program made it.
 const MADE_BY: &str = "made-by.sha256";
 

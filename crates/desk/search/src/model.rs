@@ -247,28 +247,6 @@ impl Model {
         Ok(Self { processes: self.processes.iter().map(one).collect::<Result<_, _>>()? })
     }
 
-    /// The same processes had the scaled `points` alone been evaluated, each in `n_blocks`, and given what is
-    /// expected there.
-    ///
-    /// # Errors
-    /// [`SearchError::Surrogate`].
-    pub(crate) fn instead(&self, points: &[Vec<f64>], n_blocks: f64) -> Result<Self, SearchError> {
-        let one = |one: &Process| {
-            let values = points.iter().map(|point| Ok(one.process.predict(point)?.mean));
-            let observations = Observations {
-                inputs: points.concat(),
-                n_dimensions: points.first().map_or(0, Vec::len),
-                values: values.collect::<Result<_, SearchError>>()?,
-                variances: vec![one.noise / n_blocks; points.len()],
-            };
-            let parameters = one.process.hyperparameters().clone();
-            let process =
-                GaussianProcess::new(one.shape, parameters, observations, Mean::Constant)?;
-            Ok::<_, SearchError>(Process { process, shape: one.shape, noise: one.noise })
-        };
-        Ok(Self { processes: self.processes.iter().map(one).collect::<Result<_, _>>()? })
-    }
-
     /// `n` curves drawn from the mixture at scaled `points`, in random order.
     ///
     /// # Errors

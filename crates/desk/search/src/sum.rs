@@ -145,17 +145,6 @@ impl Sum {
         Ok(Self { models: models.collect::<Result<_, _>>()?, ..self.clone() })
     }
 
-    /// What would be known had the `points` alone been evaluated, each in as many blocks, and given what is
-    /// expected there: how well another design tells the same curve.
-    ///
-    /// # Errors
-    /// [`SearchError::Surrogate`].
-    pub fn instead(&self, points: &[Vec<f64>]) -> Result<Self, SearchError> {
-        let scaled = self.scaled(points);
-        let models = self.models.iter().map(|model| model.instead(&scaled, self.n_blocks));
-        Ok(Self { models: models.collect::<Result<_, _>>()?, ..self.clone() })
-    }
-
     /// Blocks of an evaluation (–).
     pub(crate) fn n_blocks(&self) -> f64 {
         self.n_blocks

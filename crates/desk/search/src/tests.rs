@@ -284,30 +284,3 @@ proptest! {
         }
     }
 }
-
-/// What is not known of a process hangs on where it was evaluated, not on what that gave.
-#[test]
-fn another_design_at_the_same_points_knows_as_much_and_a_denser_one_more() {
-    let space = Space::new(vec![Axis::new(0.05, 1.0), Axis::new(0.5, 6.0)]).expect("ranges");
-    let mut normal = normals(7);
-    let settings = Settings { weights: vec![1.0; 2], budget: 8, ..Settings::of_one() };
-    let found = maximise(&space, &settings, |proposal| {
-        each(proposal, |point| {
-            array([point[0], point[1]]).map(|value| blocks(value, 0.02, &mut normal)).to_vec()
-        })
-    });
-    let found = found.expect("a search");
-    let asked = found.sum.place(&[0.3, 3.0]);
-    let deviations = |sum: &Sum| {
-        let parts = sum.parts().flat_map(|(model, _)| &model.processes);
-        let of_one = |one: &crate::model::Process| one.process.predict(&asked).unwrap();
-        parts.map(|one| of_one(one).standard_deviation).collect::<Vec<f64>>()
-    };
-    let own = deviations(&found.sum);
-    let same = deviations(&found.sum.instead(&found.history.points).unwrap());
-    let denser = deviations(&found.sum.instead(&space.lattice(12)).unwrap());
-    for ((own, same), denser) in own.iter().zip(&same).zip(&denser) {
-        assert!((own - same).abs() < 1e-9 * own, "{own} {same}");
-        assert!(denser < own, "{denser} {own}");
-    }
-}

@@ -228,12 +228,9 @@ fn made(
 fn over_rotors(site: &Site, planes: Box<dyn Planes>) -> Result<PrescribedWind, InflowError> {
     let [low, high] = around_rotors(site);
     let grid = planes.grid();
-    // As OpenFAST has it: a record that does not repeat starts half its width upwind of the first turbine.
-    let [left, right] = grid.across();
-    let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
     let reach = reach_along(site);
     let extent = [low.x - reach, high.x + reach + reach_of_wakes(site)];
-    let placement = Placement { origin_x, shift_y: 0.0, extent };
+    let placement = Placement { origin_x: grid.origin_x(), shift_y: 0.0, extent };
     let wind = PrescribedWind::over_planes(planes, placement)?;
     wind.covers(low, high, site.case.time.duration)?;
     Ok(wind)

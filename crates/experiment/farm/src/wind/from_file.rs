@@ -208,12 +208,11 @@ fn beyond(site: &Site, planes: &dyn Planes) -> Option<Beyond> {
 /// first turbine meets them at the same time.
 fn entry(site: &Site, grid: &PlaneGrid) -> Entry {
     let plan = site.plan;
-    let [left, right] = grid.across();
-    let origin_x = if grid.repeats { 0.0 } else { 0.5 * (right - left) };
     // The inlet stands before the first cell.
     let inlet = plan.origin.x - 0.5 * plan.spacing;
     let outlet = plan.origin.x + (plan.n_cells[0] as f64 + 0.5) * plan.spacing;
-    Entry { origin_x, extent: [inlet, outlet], duration: site.case.time.duration }
+    let extent = [inlet, outlet];
+    Entry { origin_x: grid.origin_x(), extent, duration: site.case.time.duration }
 }
 
 /// What the middles of the cells of `site` span along y and z (m).

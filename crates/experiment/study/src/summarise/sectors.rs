@@ -27,12 +27,32 @@ pub(super) fn of(setup: &Prepared, index: usize) -> Result<Vec<Sector>, StudyErr
     Ok(means.sectors(disc)?.to_vec())
 }
 
-/// The planes of a record on `grid` that pass a rotor at `x` (m) between these times (s), as records are laid
-/// around rotors: one that does not repeat begins half its width upwind.
+/// The planes of a record on `grid` that pass a rotor at `x` (m) between these times (s).
 fn passing(grid: &PlaneGrid, x: f64, [from, to]: [f64; 2]) -> Range<usize> {
-    let [right, left] = grid.across();
-    let origin = if grid.repeats { 0.0 } else { 0.5 * (left - right) };
-    let before = (origin - x) / grid.speed;
+    let before = (grid.origin_x() - x) / grid.speed;
     let [first, last] = [from, to].map(|time| (time + before) / grid.interval);
     first.ceil() as usize..last.floor() as usize + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_pass_a_rotor_as_late_as_they_stand_upwind() {
+        let grid = PlaneGrid {
+            n_y: 35,
+            n_z: 10,
+            spacing: [10.0; 2],
+            first: [-170.0, 10.0],
+            interval: 2.0,
+            speed: 8.5,
+            n_steps: 400,
+            repeats: false,
+        };
+        // Half of 340 m upwind are 20 s: planes 25 to 325 at the first turbine, 10 s fewer 85 m on.
+        assert_eq!(passing(&grid, 0.0, [30.0, 630.0]), 25..326);
+        assert_eq!(passing(&grid, 85.0, [30.0, 630.0]), 20..321);
+        assert_eq!(passing(&PlaneGrid { repeats: true, ..grid }, 0.0, [30.0, 630.0]), 15..316);
+    }
 }

@@ -49,6 +49,13 @@ impl PlaneGrid {
         [self.first[1], self.first[1] + (self.n_z - 1) as f64 * self.spacing[1]]
     }
 
+    /// Where the first plane stands at time zero around rotors (m along x), as OpenFAST has it: a record that
+    /// does not repeat starts half its width upwind of the first turbine.
+    pub fn origin_x(&self) -> f64 {
+        let [right, left] = self.across();
+        if self.repeats { 0.0 } else { 0.5 * (left - right) }
+    }
+
     /// The rows below and above `height` (m), and the share that the upper one has there (–); beyond the rows
     /// the nearest one alone.
     pub fn rows_at(&self, height: f64) -> ([usize; 2], f64) {
