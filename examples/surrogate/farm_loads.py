@@ -4,7 +4,8 @@
     python3 farm_loads.py surrogates/T1.RootMyb1.del_m10.json surrogates/T1.TwrBsMyt.del_m4.json
 
 The surrogates are those of docs/surrogate.md: wind speeds on the upper, right, lower and left quarter of the rotor, looking
-downwind, turbulence intensities there as shares of the free stream, then yaw and amplitude of the helix in degrees.
+downwind, turbulence intensities there as shares of the free stream, then the turn of the nacelle from the wind and the amplitude of
+the helix, in degrees.
 """
 
 import json
@@ -14,7 +15,7 @@ import sys
 import numpy as np
 
 SIDES = ("up", "right", "down", "left")
-INPUTS = [f"sector_{side}.{what}" for what in ("wind_speed", "turbulence_intensity") for side in SIDES] + ["yaw_deg", "amplitude_deg"]
+INPUTS = [f"sector_{side}.{what}" for what in ("wind_speed", "turbulence_intensity") for side in SIDES] + ["yaw_misalignment_deg", "amplitude_deg"]
 
 
 class Surrogate:

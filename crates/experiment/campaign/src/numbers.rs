@@ -51,6 +51,9 @@ impl Gathered {
         if let Some(rotor) = &turbine.rotor {
             self.add(format!("{own}.yaw_deg"), "deg", rotor.yaw_deg);
         }
+        if let Some(misalignment) = turbine.yaw_misalignment_deg {
+            self.add(format!("{own}.yaw_misalignment_deg"), "deg", misalignment);
+        }
         for sector in &turbine.sectors {
             let name = format!("{own}.sector_{}", sector.name);
             self.add(format!("{name}.wind_speed"), "m/s", sector.wind_speed);

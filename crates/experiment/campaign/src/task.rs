@@ -2,7 +2,7 @@
 
 use crate::error::CampaignError;
 use basis::records::SweptValue;
-use formats::case::{CampaignFile, Exclusion, decisive_text};
+use formats::case::{CampaignFile, Draw, Exclusion, decisive_text};
 use formats::{records, shipped};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -26,12 +26,12 @@ pub(crate) struct Task {
 impl Task {
     /// Factors with their levels, in words: `wind.speed = 8, wind.seed = 1`.
     pub(crate) fn words(&self) -> String {
-        self.words_without("").join(", ")
+        self.words_without(&[]).join(", ")
     }
 
-    /// The same one by one, but for the key `left_out`.
-    fn words_without(&self, left_out: &str) -> Vec<String> {
-        let kept = self.columns.iter().filter(|(name, _)| name != left_out);
+    /// The same one by one, but for those that are `left_out`.
+    fn words_without(&self, left_out: &[String]) -> Vec<String> {
+        let kept = self.columns.iter().filter(|(name, _)| !left_out.contains(name));
         kept.map(|(name, value)| format!("{name} = {}", value.words())).collect()
     }
 
@@ -84,20 +84,21 @@ pub(crate) fn all(file: &CampaignFile) -> Result<Tasks, CampaignError> {
     }
     let n_excluded = n_combinations - tasks.len();
     let n_left = tasks.len();
-    if let Some(n_drawn) = file.draw {
-        draw(&mut tasks, n_drawn, &file.seed_key);
+    if let Some(of) = &file.draw {
+        draw(&mut tasks, of);
     }
     let n_undrawn = n_left - tasks.len();
     Ok(Tasks { tasks, n_excluded, n_undrawn })
 }
 
-/// Leaves `n_drawn` combinations in `tasks`, those that have the least hashes, each with all its seeds: so by
-/// chance, and the same each time; of a larger draw, those of a smaller one are a part.
-fn draw(tasks: &mut Vec<Task>, n_drawn: usize, seed_key: &str) {
-    let hash = |task: &Task| records::sha256(task.words_without(seed_key).join("\n").as_bytes());
+/// Leaves as many combinations in `tasks` as `of` says, those that have the least hashes, each with all of
+/// what is not drawn, as its seeds: so by chance, and the same each time; of a larger draw, those of a
+/// smaller one are a part.
+fn draw(tasks: &mut Vec<Task>, of: &Draw) {
+    let hash = |task: &Task| records::sha256(task.words_without(&of.whole).join("\n").as_bytes());
     let hashes: Vec<String> = tasks.iter().map(hash).collect();
     let all: BTreeSet<&String> = hashes.iter().collect();
-    let drawn: BTreeSet<&String> = all.into_iter().take(n_drawn).collect();
+    let drawn: BTreeSet<&String> = all.into_iter().take(of.n).collect();
     let mut hashes = hashes.iter();
     tasks.retain(|_| hashes.next().is_some_and(|hash| drawn.contains(hash)));
 }

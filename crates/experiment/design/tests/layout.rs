@@ -16,13 +16,18 @@ const HUB: f64 = 80.0;
 /// Wind in the middle of the wake's record (m/s), and by how much more blows a metre to the left (1/s).
 const SPEED: f64 = 7.0;
 const ASIDE: f64 = 0.004;
+/// Wind across the axis in every record (m/s), to the left.
+const ACROSS: f64 = 0.5;
 const INPUTS: [&str; 5] = [
     "T1.sector_left.wind_speed",
     "T1.sector_right.wind_speed",
     "T1.sector_up.turbulence_intensity",
-    "turbine.T1.yaw_deg",
+    YAW,
     "control.T1.amplitude_deg",
 ];
+/// The input of the nacelle: its turn from the axis, or from the wind.
+const YAW: &str = "turbine.T1.yaw_deg";
+const MISALIGNMENT: &str = "T1.yaw_misalignment_deg";
 
 /// Wind that grows evenly to the left, with waves that pass.
 struct Record {
@@ -48,7 +53,7 @@ impl Planes for Record {
         let wave = 0.4 * (TAU * step as f64 / 8.0).sin();
         for (point, value) in values.iter_mut().enumerate() {
             let y = -200.0 + 10.0 * (point % 41) as f64;
-            *value = [self.speed + self.slope * y + wave, 0.0, 0.0].map(|value| value as f32);
+            *value = [self.speed + self.slope * y + wave, ACROSS, 0.0].map(|value| value as f32);
         }
         Ok(())
     }
@@ -65,9 +70,9 @@ fn law(x: &[f64]) -> [f64; 2] {
     [power, 1.0 + 3.0 * (x[0] - x[1]) + 40.0 * x[2] + 0.02 * x[3] + 0.5 * x[4]]
 }
 
-/// Surrogates of power and load, in `folder`.
-fn surrogates(folder: &Path) {
-    let mut text = INPUTS.join(",") + ",power [MW],load [MN-m]\n";
+/// Surrogates of power and load, in `folder`; that of the load knows the nacelle by `yaw`.
+fn surrogates(folder: &Path, yaw: &str) {
+    let mut text = String::new();
     for row in 0..60 {
         let share = |of: f64| (of * f64::from(row)).fract();
         let x = [
@@ -81,11 +86,14 @@ fn surrogates(folder: &Path) {
         x.iter().for_each(|x| write!(text, "{x},").expect("a string takes it"));
         writeln!(text, "{power},{load}").expect("a string takes it");
     }
-    fs::write(folder.join("loads.csv"), text).expect("written");
-    for output in ["power", "load"] {
+    for (output, yaw) in [("power", YAW), ("load", yaw)] {
+        let inputs = INPUTS.map(|input| if input == YAW { yaw } else { input });
+        let file = folder.join(format!("{output}.csv"));
+        let heading = inputs.join(",") + ",power [MW],load [MN-m]\n";
+        fs::write(&file, heading + &text).expect("written");
         let question = TrainQuestion {
-            file: folder.join("loads.csv"),
-            inputs: INPUTS.map(str::to_owned).to_vec(),
+            file,
+            inputs: inputs.map(str::to_owned).to_vec(),
             output: output.to_owned(),
             kernel: KernelText::new("se").expect("a kernel"),
             trend: Trend::Linear,
@@ -153,19 +161,19 @@ inputs = { T1 = { "control.T1.amplitude_deg" = 4.0 }, T2 = { amplitude_deg = 0.0
 "#;
 
 /// A folder with records, surrogates and the layout of `text`.
-fn written(text: &str) -> tempfile::TempDir {
+fn written(text: &str, yaw: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
     record(&at("free.bts"), 8.0, 0.0);
     record(&at("wake.bts"), SPEED, ASIDE);
     record(&at("mixed.bts"), SPEED + 0.5, ASIDE);
-    surrogates(folder.path());
+    surrogates(folder.path(), yaw);
     fs::write(at("layout.toml"), text).expect("written");
     folder
 }
 
-fn found(text: &str) -> (tempfile::TempDir, Layout) {
-    let folder = written(text);
+fn found(text: &str, yaw: &str) -> (tempfile::TempDir, Layout) {
+    let folder = written(text, yaw);
     let found = predict_layout(&folder.path().join("layout.toml")).expect("predictions");
     (folder, found)
 }
@@ -184,7 +192,7 @@ fn inputs([speed, slope]: [f64; 2], shift: f64, direction: f64, amplitude: f64) 
 /// within 1e-4 of an output's spread of 3.
 #[test]
 fn turbines_meet_the_wind_of_their_place_in_the_wake() {
-    let (_folder, found) = found(LAYOUT);
+    let (_folder, found) = found(LAYOUT, YAW);
     assert_eq!(
         found.outputs.iter().map(|port| port.name.as_str()).collect::<Vec<_>>(),
         ["load", "power"]
@@ -222,11 +230,41 @@ fn turbines_meet_the_wind_of_their_place_in_the_wake() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
 }
 
+/// A surrogate that knows the turn of the nacelle from the wind is told how the record blows across the
+/// rotor, atan(v/u) with the mean of u over the rotor, one beside it that knows its turn from the axis is
+/// not. The nacelle of T2 is turned by 3° itself.
+#[test]
+fn wind_across_a_rotor_is_as_good_as_yaw() {
+    let yawed = "T2 = { amplitude_deg = 0.0, yaw_deg = 3.0 } }";
+    let text = LAYOUT.replace("T2 = { amplitude_deg = 0.0 } }", yawed);
+    let (_folder, found) = found(&text, MISALIGNMENT);
+    for (rows, turned, n) in [(&found.displacements, 0.0, 5), (&found.directions, 1.0, 17)] {
+        let of_t2 = rows.iter().filter(|row| (row.strategy, row.turbine) == (0, 1));
+        let of_t2: Vec<_> = of_t2.collect();
+        assert_eq!(of_t2.len(), n);
+        for row in of_t2 {
+            let across = ACROSS.atan2(SPEED + ASIDE * row.shift).to_degrees();
+            assert!((3.8..4.4).contains(&across), "{across}");
+            let turn = turned * row.at + across - 3.0;
+            let [power, load] = law(&inputs([SPEED, ASIDE], row.shift, turn, 0.0));
+            let [load_found, power_found] = [0, 1].map(|output| row.predictions[output].mean);
+            assert!((load_found - load).abs() < 1e-3, "{row:?}: {load}");
+            assert!((power_found - power).abs() < 1e-3, "{row:?}: {power}");
+        }
+    }
+    // What follows from the record cannot be told.
+    let folder =
+        written(&text.replace("yaw_deg = 3.0", "yaw_misalignment_deg = 3.0"), MISALIGNMENT);
+    let error = predict_layout(&folder.path().join("layout.toml")).expect_err("refused");
+    let told = format!("{:?}", miette::Report::new(error));
+    assert!(told.contains("yaw_misalignment_deg follows from"), "{told}");
+}
+
 /// Weights of directions make up one and fall off as a Gaussian of 2.5°; what is odd in the direction
 /// averages out.
 #[test]
 fn means_over_the_direction_have_gaussian_weights() {
-    let (folder, found) = found(LAYOUT);
+    let (folder, found) = found(LAYOUT, YAW);
     let of_t1: Vec<_> =
         found.directions.iter().filter(|row| row.strategy == 0 && row.turbine == 0).collect();
     let total: f64 = of_t1.iter().map(|row| row.weight).sum();
@@ -269,7 +307,7 @@ fn means_over_the_direction_have_gaussian_weights() {
 
 #[test]
 fn what_is_wrong_is_named_with_the_fix() {
-    let folder = written(LAYOUT);
+    let folder = written(LAYOUT, YAW);
     let path = folder.path().join("layout.toml");
     let told = |text: String| {
         fs::write(&path, text).expect("written");

@@ -136,6 +136,8 @@ impl<'a> Turbine<'a> {
         let outran = |outrun: Outrun| outrun.warning(&self.run.name, name);
         warnings.extend(outrun.map(|found| self.warning(WarningKind::TipSpeed, outran(found))));
 
+        let wind = sectors::of(setup, index)?;
+        let misalignment = wind.as_ref().map(|wind| (yaw - wind.direction).to_degrees());
         Ok(TurbineSummary {
             name: name.to_owned(),
             model: setup.case.turbines[index].model.clone(),
@@ -145,7 +147,8 @@ impl<'a> Turbine<'a> {
             thrust,
             rotor_speed,
             pitch,
-            sectors: sectors::of(setup, index)?,
+            sectors: wind.map(|wind| wind.sectors).unwrap_or_default(),
+            yaw_misalignment_deg: misalignment,
             delivered_pitch,
             power_gain: None,
             pitch_response: control.kind().pitch_response(control),

@@ -69,10 +69,13 @@ fn run(options: &StudyOptions, outputs: &Outputs) -> Outcome {
     study::run_with(options, outputs, &STOP, &mut Silent).expect("it runs")
 }
 
-fn power(folder: &Path) -> f64 {
+fn summary(folder: &Path) -> serde_json::Value {
     let text = fs::read_to_string(RunFolder::new(folder, "baseline").summary_path()).expect("it");
-    let summary: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    summary["turbines"][0]["power"]["mean"].as_f64().expect("a number")
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn power(folder: &Path) -> f64 {
+    summary(folder)["turbines"][0]["power"]["mean"].as_f64().expect("a number")
 }
 
 /// Mean speed at the hub of a rotor `shift` (m) to the left of the middle of the slice at `path`.
@@ -192,5 +195,46 @@ fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
     assert!(
         told.contains("wind.cut takes 41.0 s of it") && told.contains("wind.cut.duration"),
         "{told}"
+    );
+}
+
+/// Wind that blows across by atan(0.7/9), which is 4.45°, to the left: of a nacelle that is turned by 10°
+/// to the left 5.55° are left.
+#[test]
+fn a_nacelle_is_turned_from_the_wind_over_its_rotor() {
+    let folder = written(SINK);
+    let runs = folder.path().join("runs/baseline");
+    fs::create_dir_all(&runs).expect("a folder");
+    let n_points = 61 * 51 * 17;
+    let across = flow::inflow::TurbulenceBox::new(
+        [61, 51, 17],
+        [9.0, 10.0, 10.0],
+        [vec![0.0; n_points], vec![0.7; n_points], vec![0.0; n_points]],
+    );
+    let stored = turbulence_box::StoredBox {
+        turbulence: across.expect("a box"),
+        hub_speed: 9.0,
+        hub_height: 90.0,
+        lowest_height: 10.0,
+        mean_speeds: vec![9.0; 17],
+        description: "wind that blows across".to_owned(),
+    };
+    turbulence_box::write(&runs.join("slices-wake-2D.bts"), &stored).expect("a file");
+    let options = StudyOptions {
+        case: folder.path().join("case.toml"),
+        output: Some(folder.path().join("out")),
+        overrides: vec!["turbine.T1.yaw_deg=10".to_owned(), "wind.cut.shift=0".to_owned()],
+        ..StudyOptions::default()
+    };
+    let stop = AtomicBool::new(false);
+    let outcome = study::run_with(&options, &Outputs::standard(), &stop, &mut Silent);
+    assert!(matches!(outcome.expect("it runs"), Outcome::Done { .. }));
+    let turbine = &summary(&folder.path().join("out"))["turbines"][0];
+    let [yaw, misalignment] = [&turbine["rotor"]["yaw_deg"], &turbine["yaw_misalignment_deg"]]
+        .map(|value| value.as_f64().expect("a number"));
+    let blows = 0.7_f64.atan2(9.0).to_degrees();
+    assert!(
+        (yaw - 10.0).abs() < 1e-6 && (yaw - misalignment - blows).abs() < 1e-2,
+        "{yaw} {misalignment}"
     );
 }

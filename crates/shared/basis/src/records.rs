@@ -170,7 +170,7 @@ pub struct Rotor {
     pub diameter: f64,
     /// Where its hub is: hub height above the foot of the tower (m, farm frame).
     pub hub: [f64; 3],
-    /// Mean turn of its nacelle from facing the wind, counter-clockwise seen from above (deg); zero in
+    /// Mean turn of its nacelle from facing along x, counter-clockwise seen from above (deg); zero in
     /// records that do not tell.
     #[serde(default)]
     pub yaw_deg: f64,
@@ -199,6 +199,10 @@ pub struct TurbineSummary {
     /// The wind that comes to each quarter of its rotor; none unless it comes from a part of a record.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sectors: Vec<Sector>,
+    /// Mean turn of its nacelle from facing that wind, of its mean over the whole rotor, counter-clockwise
+    /// seen from above (deg); absent likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yaw_misalignment_deg: Option<f64>,
     /// Delivered excitation; absent on a turbine without one.
     pub delivered_pitch: Option<DeliveredPitch>,
     /// Power relative to the same turbine in the compared run, minus one (–).

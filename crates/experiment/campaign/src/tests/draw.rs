@@ -33,3 +33,33 @@ fn a_draw_has_whole_combinations_and_those_of_a_smaller_one() {
     }
     assert!(two.iter().all(|task| four.contains(task)));
 }
+
+/// Of two factors one is drawn: what is drawn has all levels of the other, and both seeds.
+#[test]
+fn what_is_not_drawn_is_whole() {
+    let text = CAMPAIGN
+        .replace("[factors]", "seeds = [1, 2]\ndraw = 1\ndraw_whole = [\"NAME\"]\n[factors]");
+    let read = |name: &str| {
+        let folder = written(&text.replace("NAME", name));
+        formats::shipped::read_campaign(&folder.path().join("campaign.toml"))
+    };
+    let all = read("wind.speed").unwrap();
+    assert_eq!(all.factors.len(), 3);
+    for factor in &all.factors[..2] {
+        let tasks = task::all(&read(&factor.name).unwrap()).unwrap().tasks;
+        assert_eq!(tasks.len(), 2 * factor.levels.len(), "{tasks:?}");
+        let values = |key: &str| {
+            let own = |task: &Task| {
+                task.columns.iter().find(|(name, _)| name == key).map(|(_, value)| value.words())
+            };
+            tasks.iter().filter_map(own).collect::<std::collections::BTreeSet<_>>().len()
+        };
+        for other in &all.factors[..2] {
+            let key = &other.levels[0].settings[0].key;
+            let expected = if other.name == factor.name { factor.levels.len() } else { 1 };
+            assert_eq!(values(key), expected, "{key}");
+        }
+    }
+    let error = read("wind.spede").unwrap_err().to_string();
+    assert!(error.contains("`draw_whole` names `wind.spede`, which is no factor"), "{error}");
+}

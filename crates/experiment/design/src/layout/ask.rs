@@ -3,7 +3,7 @@
 use super::file::{LayoutFile, WHAT};
 use crate::DesignError;
 use crate::regression::regression;
-use flow::inflow::{CutPlanes, Disc, PlaneMeans, SECTOR_NAMES};
+use flow::inflow::{CutPlanes, Disc, InflowError, PlaneMeans, SECTOR_NAMES};
 use formats::surrogate_model::SurrogateModel;
 use formats::{FileError, turbulence_box};
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,11 +17,17 @@ enum Source {
     Speed(usize),
     /// Turbulence intensity there.
     Intensity(usize),
-    /// Yaw misalignment.
+    /// Turn of the nacelle from the axis of the record.
     Yaw,
+    /// The same from the mean wind over the rotor.
+    Misalignment,
     /// What the strategy says.
     Given,
 }
+
+/// What a strategy calls the turn of a nacelle, and what follows from it and the record.
+const YAW: &str = "yaw_deg";
+const MISALIGNMENT: &str = "yaw_misalignment_deg";
 
 /// Whether the input called `input` is what `name` says: all of its name, or what follows a dot in it.
 fn is_called(input: &str, name: &str) -> bool {
@@ -38,7 +44,26 @@ impl Source {
                 return Self::Intensity(quarter);
             }
         }
-        if is_called(input, "yaw_deg") { Self::Yaw } else { Self::Given }
+        match input {
+            _ if is_called(input, YAW) => Self::Yaw,
+            _ if is_called(input, MISALIGNMENT) => Self::Misalignment,
+            _ => Self::Given,
+        }
+    }
+
+    /// What a strategy calls the input called `input`; none where it does not tell it.
+    fn key(self, input: &str) -> Option<&str> {
+        match self {
+            Self::Speed(_) | Self::Intensity(_) => None,
+            Self::Misalignment => Some(YAW),
+            Self::Yaw | Self::Given => Some(input),
+        }
+    }
+
+    /// Whether a strategy that says `name` tells the input called `input`.
+    fn is_given(self, input: &str, name: &str) -> bool {
+        self.key(input)
+            .is_some_and(|key| is_called(key, name) || key == YAW && is_called(name, key))
     }
 }
 
@@ -108,17 +133,15 @@ impl<'a> Asked<'a> {
     fn check_names(&self) -> Result<(), DesignError> {
         let ports =
             || self.surrogates.iter().flat_map(|one| one.model.inputs.iter().zip(&one.sources));
-        let is_own = |name: &str| {
-            ports().any(|(port, source)| {
-                matches!(source, Source::Given | Source::Yaw) && is_called(&port.name, name)
-            })
-        };
+        let is_own = |name: &str| ports().any(|(port, source)| source.is_given(&port.name, name));
         let refused = |key: String, name: &str| {
-            let own: BTreeSet<&str> = ports()
-                .filter(|(_, source)| matches!(source, Source::Given | Source::Yaw))
-                .map(|(port, _)| port.name.as_str())
-                .collect();
+            let own: BTreeSet<&str> =
+                ports().filter_map(|(port, source)| source.key(&port.name)).collect();
             let own = own.into_iter().collect::<Vec<_>>().join(", ");
+            if is_called(name, MISALIGNMENT) {
+                let problem = format!("{key}: {name} follows from the wind of the record");
+                return self.refused(problem, format!("give {YAW}, the turn from the axis"));
+            }
             let problem = format!("{key}: no surrogate has the input {name}");
             self.refused(problem, format!("give one of {own}, or leave it out"))
         };
@@ -169,7 +192,8 @@ impl<'a> Asked<'a> {
         let record = &strategy.wind[turbine];
         let disc =
             Disc { y: question.shift, z: self.file.hub_height, radius: 0.5 * self.file.diameter };
-        let sectors = self.winds[record].sectors(disc).map_err(|error| {
+        let wind = &self.winds[record];
+        let outside = |error: InflowError| {
             let problem = format!(
                 "strategy {}, turbine {turbine}, {:.1} m to the left of the middle of {}: {error}",
                 strategy.name,
@@ -180,18 +204,22 @@ impl<'a> Asked<'a> {
                 problem,
                 "record a wider or higher slice, or take a smaller range".to_owned(),
             )
-        })?;
+        };
+        let sectors = wind.sectors(disc).map_err(outside)?;
         let value = |(port, source): (&formats::linear_model::Port, &Source)| {
-            let instead = question.instead.iter().find(|(name, _)| is_called(&port.name, name));
             let own = strategy.inputs.get(turbine).into_iter().flatten();
-            let given = instead.map(|(_, value)| *value).or_else(|| {
-                own.into_iter().find(|(name, _)| is_called(&port.name, name)).map(|(_, v)| *v)
-            });
+            let instead = question.instead.iter().map(|(name, value)| (name, value));
+            let given = instead.chain(own).find(|(name, _)| source.is_given(&port.name, name));
+            let given = given.map(|(_, value)| *value);
             match *source {
                 Source::Speed(quarter) => Ok(sectors[quarter].wind_speed),
                 Source::Intensity(quarter) => Ok(sectors[quarter].turbulence_intensity),
                 // The nacelle stays where it is when the wind turns.
                 Source::Yaw => Ok(given.unwrap_or(0.0) - question.direction),
+                Source::Misalignment => {
+                    let across = wind.direction(disc).map_err(outside)?.to_degrees();
+                    Ok(given.unwrap_or(0.0) - question.direction - across)
+                }
                 Source::Given => given.ok_or_else(|| {
                     let problem = format!(
                         "strategy {} does not tell the input {} of the surrogate {} for turbine {turbine}",

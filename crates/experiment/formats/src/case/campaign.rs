@@ -69,6 +69,15 @@ pub struct Exclusion {
     pub conditions: Vec<(String, Vec<SweptValue>)>,
 }
 
+/// A part of a campaign, drawn by chance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// Combinations that are drawn (–).
+    pub n: usize,
+    /// Keys and linked factors that are not: what is drawn of the others is made with all of their levels.
+    pub whole: Vec<String>,
+}
+
 /// A campaign as its file tells it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignFile {
@@ -78,12 +87,10 @@ pub struct CampaignFile {
     pub case: PathBuf,
     /// What is varied; the last one, which changes fastest, is the seed where there are several.
     pub factors: Vec<Factor>,
-    /// Key of the seed.
-    pub seed_key: String,
     /// What is left out.
     pub excluded: Vec<Exclusion>,
-    /// Combinations of levels that are made, drawn by chance (–); all without one.
-    pub draw: Option<usize>,
+    /// What of it is made; all without one.
+    pub draw: Option<Draw>,
     /// Runs of the case that are made; all when empty.
     pub runs: Vec<String>,
     /// What stays of a task.
@@ -162,15 +169,15 @@ fn read_entries(
     let seed_key = root.optional_text("seed_key").unwrap_or_else(|| super::sweep::SEED.to_owned());
     levels.read_seeds(&seed_key, root.entry("seeds"));
     let factors = levels.into_factors(&end);
+    let draw = read_draw(&root, &factors, seed_key, &findings);
     let excluded = excluded::read(root.entry("exclude"), text, &factors, &findings);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let file = CampaignFile {
         name: root.optional_text("name").unwrap_or(stem),
         case,
         factors,
-        seed_key,
         excluded,
-        draw: root.optional_whole("draw").map(|draw| draw as usize),
+        draw,
         runs: texts(&root, "runs", &findings),
         keep: match root.choice("keep") {
             "series" => Keep::Series,
@@ -184,6 +191,40 @@ fn read_entries(
     };
     drop(root);
     Ok((file, findings.into_problems()))
+}
+
+/// What of `factors` is drawn; seeds, under `seed_key`, are not.
+fn read_draw(
+    root: &Section,
+    factors: &[Factor],
+    seed_key: String,
+    findings: &Findings,
+) -> Option<Draw> {
+    let mut whole = vec![seed_key];
+    for name in texts(root, "draw_whole", findings) {
+        let Some(factor) = factors.iter().find(|factor| factor.name == name) else {
+            let message = format!("`draw_whole` names `{name}`, which is no factor");
+            let factors: Vec<&str> = factors.iter().map(|factor| factor.name.as_str()).collect();
+            let fix = format!("name some of {}", factors.join(", "));
+            object(findings, root.span_of("draw_whole"), message, "no factor", &fix);
+            continue;
+        };
+        let keys = factor.levels.iter().flat_map(|level| &level.settings);
+        whole.extend(keys.map(|setting| setting.key.clone()));
+        whole.push(name);
+    }
+    let n = root.optional_whole("draw");
+    if n.is_none() && root.has("draw_whole") {
+        let message = "`draw_whole` is there without `draw`".to_owned();
+        object(
+            findings,
+            root.span_of("draw_whole"),
+            message,
+            "nothing is drawn",
+            "add draw, or leave this out",
+        );
+    }
+    n.map(|n| Draw { n: n as usize, whole })
 }
 
 /// The case that a campaign in `folder` calls `name`: a file beside it, or one that comes with the program.
@@ -206,7 +247,7 @@ fn texts(root: &Section, key: &str, findings: &Findings) -> Vec<String> {
     let texts: Option<Vec<String>> = items.iter().map(text).collect();
     texts.filter(|texts| !texts.is_empty()).unwrap_or_else(|| {
         let message = format!("`{key}` must be a list of texts");
-        let fix = format!("write {key} = [\"...\"], or leave it out for all");
+        let fix = format!("write {key} = [\"...\"], or leave it out");
         object(findings, entry.node.span.clone(), message, "not such a list", fix);
         Vec::new()
     })

@@ -31,7 +31,7 @@ mod wind;
 mod write;
 
 pub use campaign::{
-    CampaignFile, Exclusion, Factor, Keep, Level, LevelSetting, Shipped, read_campaign,
+    CampaignFile, Draw, Exclusion, Factor, Keep, Level, LevelSetting, Shipped, read_campaign,
 };
 pub use difference::{Difference, differences};
 pub use error::{CaseError, Problem, ProblemKind};

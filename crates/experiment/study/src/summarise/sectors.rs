@@ -1,4 +1,4 @@
-//! The wind of a part of a record on the quarters of a rotor.
+//! The wind of a part of a record on a rotor.
 
 use crate::StudyError;
 use crate::air;
@@ -8,15 +8,23 @@ use farm::solvers::WindSource;
 use flow::inflow::{Disc, PlaneGrid, PlaneMeans};
 use std::ops::Range;
 
+/// What comes to a rotor.
+pub(super) struct RotorWind {
+    /// Wind on its quarters.
+    pub(super) sectors: Vec<Sector>,
+    /// Where the mean wind over it blows to, counter-clockwise from the axis of the planes (rad).
+    pub(super) direction: f64,
+}
+
 /// The wind that comes to the rotor of turbine number `index` of `setup` while it is analysed; none where it
 /// is cut of nothing.
 ///
 /// # Errors
 /// [`StudyError`] where the record cannot be read any more.
-pub(super) fn of(setup: &Prepared, index: usize) -> Result<Vec<Sector>, StudyError> {
+pub(super) fn of(setup: &Prepared, index: usize) -> Result<Option<RotorWind>, StudyError> {
     let case = &setup.case;
     if case.wind.cut.is_none() || case.wind_source() != WindSource::Planes {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let (foot, machine) = (setup.plan.positions[index], &setup.models[index].definition);
     let disc =
@@ -24,7 +32,10 @@ pub(super) fn of(setup: &Prepared, index: usize) -> Result<Vec<Sector>, StudyErr
     let mut planes = air::planes(setup)?;
     let steps = passing(&planes.grid(), foot.x, [case.time.spin_up, case.time.duration]);
     let means = PlaneMeans::of_steps(planes.as_mut(), case.wind.speed, steps)?;
-    Ok(means.sectors(disc)?.to_vec())
+    Ok(Some(RotorWind {
+        sectors: means.sectors(disc)?.to_vec(),
+        direction: means.direction(disc)?,
+    }))
 }
 
 /// The planes of a record on `grid` that pass a rotor at `x` (m) between these times (s).

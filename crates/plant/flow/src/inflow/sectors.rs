@@ -31,6 +31,8 @@ pub struct PlaneMeans {
     grid: PlaneGrid,
     /// Mean of u (m/s).
     speeds: Vec<f64>,
+    /// Mean of v (m/s).
+    crosswinds: Vec<f64>,
     /// Turbulence intensity (–).
     intensities: Vec<f64>,
 }
@@ -62,8 +64,8 @@ impl PlaneMeans {
         let grid = planes.grid();
         let steps = steps.start..steps.end.min(grid.n_steps);
         positive("number of planes", steps.len() as f64)?;
-        let [speeds, intensities] = fields(planes, free_stream, steps)?;
-        Ok(Self { grid, speeds, intensities })
+        let [speeds, crosswinds, intensities] = fields(planes, free_stream, steps)?;
+        Ok(Self { grid, speeds, crosswinds, intensities })
     }
 
     /// Means over each quarter of `disc`: up, right, down and left, looking downwind.
@@ -87,6 +89,21 @@ impl PlaneMeans {
             }
         }))
     }
+
+    /// Where the mean wind over `disc` blows to, counter-clockwise seen from above from the axis of the
+    /// planes (rad). Wakes that are steered blow across a rotor by some degrees, which is as good as yaw.
+    ///
+    /// # Errors
+    /// As [`sectors`](Self::sectors).
+    pub fn direction(&self, disc: Disc) -> Result<f64, InflowError> {
+        positive("radius of a rotor (m)", disc.radius)?;
+        check(&self.grid, disc)?;
+        // Quarters are of one area.
+        let sum = |field: &[f64]| -> f64 {
+            (0..SECTOR_NAMES.len()).map(|quarter| mean_over(&self.grid, disc, quarter, field)).sum()
+        };
+        Ok(sum(&self.crosswinds).atan2(sum(&self.speeds)))
+    }
 }
 
 /// Whether `disc` lies within the sides and the top of `grid`.
@@ -103,13 +120,13 @@ fn check(grid: &PlaneGrid, disc: Disc) -> Result<(), InflowError> {
     Ok(())
 }
 
-/// Mean of u (m/s) and turbulence intensity over `free_stream` (–) at each point of these `steps` of
-/// `planes`.
+/// Means of u and v (m/s) and turbulence intensity over `free_stream` (–) at each point of these `steps`
+/// of `planes`.
 fn fields(
     planes: &mut dyn Planes,
     free_stream: f64,
     steps: Range<usize>,
-) -> Result<[Vec<f64>; 2], InflowError> {
+) -> Result<[Vec<f64>; 3], InflowError> {
     let grid = planes.grid();
     let n_points = grid.n_y * grid.n_z;
     let (mut first, mut plane) = (vec![[0.0_f32; 3]; n_points], vec![[0.0_f32; 3]; n_points]);
@@ -127,11 +144,14 @@ fn fields(
         }
     }
     let n = n_steps as f64;
-    let speeds = sums.iter().zip(&first).map(|(sums, first)| f64::from(first[0]) + sums[0][0] / n);
+    let means = |axis: usize| {
+        let each = sums.iter().zip(&first);
+        each.map(|(sums, first)| f64::from(first[axis]) + sums[axis][0] / n).collect()
+    };
     let variance = |[sum, squares]: &[f64; 2]| (squares / n - (sum / n).powi(2)).max(0.0);
     let intensity =
         |sums: &[[f64; 2]; 3]| (sums.iter().map(variance).sum::<f64>() / 3.0).sqrt() / free_stream;
-    Ok([speeds.collect(), sums.iter().map(intensity).collect()])
+    Ok([means(0), means(1), sums.iter().map(intensity).collect()])
 }
 
 /// Mean of `field`, a value at each point of `grid`, over `quarter` of `disc`, the first being up.

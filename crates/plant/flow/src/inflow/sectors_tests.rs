@@ -89,6 +89,21 @@ fn a_quarter_has_what_blows_in_it() {
     assert!(sectors(&mut Known(waves), low, 8.0).is_ok());
 }
 
+/// v over u, of means over the disc: where v grows to the left and u upward both are those of its middle.
+#[test]
+fn wind_that_blows_across_a_disc_has_a_direction() {
+    let across = |step: f64, y: f64, z: f64| {
+        let [u, v, w] = waves(step, 0.0, z);
+        [u, v + 0.7 + 0.01 * y, w]
+    };
+    for (shift, v) in [(0.0, 0.7_f64), (-100.0, -0.3)] {
+        let means = PlaneMeans::of(&mut Known(across), 8.0).unwrap();
+        let found = means.direction(Disc { y: shift, ..DISC }).unwrap();
+        assert!((found - v.atan2(8.0)).abs() < 1e-6, "{found}");
+        assert!(means.direction(Disc { y: 160.0, ..DISC }).is_err());
+    }
+}
+
 #[test]
 fn a_disc_beyond_the_planes_is_refused() {
     for disc in [Disc { y: 160.0, ..DISC }, Disc { y: -160.0, ..DISC }, Disc { z: 194.0, ..DISC }] {

@@ -25,6 +25,7 @@ pub fn turbine(name: &str, power: f64) -> TurbineSummary {
         rotor_speed: statistic(0.7),
         pitch: statistic(0.0),
         sectors: Vec::new(),
+        yaw_misalignment_deg: None,
         delivered_pitch: None,
         power_gain: None,
         pitch_response: None,
@@ -192,6 +193,7 @@ fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     TurbineSummary {
         rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0], yaw_deg: 0.0 }),
         sectors: sectors(),
+        yaw_misalignment_deg: Some(-2.5),
         control: ControlSummary {
             settings: Some(vec![ControlSetting {
                 key: "amplitude_deg".to_owned(),

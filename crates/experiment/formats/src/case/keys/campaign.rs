@@ -79,6 +79,13 @@ pub(in crate::case) static CAMPAIGN: Table = Table {
             "So many combinations of levels alone, drawn by chance, always the same ones, each with all its seeds.",
         ),
         key(
+            "draw_whole",
+            Holds::Sweep,
+            "",
+            Otherwise("none"),
+            "Factors that are not drawn: each combination that is drawn of the others is made with all of their levels, as with all seeds.",
+        ),
+        key(
             "runs",
             Holds::Sweep,
             "",
