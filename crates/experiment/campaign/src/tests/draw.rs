@@ -60,6 +60,6 @@ fn what_is_not_drawn_is_whole() {
             assert_eq!(values(key), expected, "{key}");
         }
     }
-    let error = read("wind.spede").unwrap_err().to_string();
+    let error = read("wind.spede").unwrap_err().to_lines();
     assert!(error.contains("`draw_whole` names `wind.spede`, which is no factor"), "{error}");
 }
