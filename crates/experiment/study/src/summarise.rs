@@ -137,7 +137,6 @@ impl<'a> Turbine<'a> {
         warnings.extend(outrun.map(|found| self.warning(WarningKind::TipSpeed, outran(found))));
 
         let wind = sectors::of(setup, index)?;
-        let misalignment = wind.as_ref().map(|wind| (yaw - wind.direction).to_degrees());
         Ok(TurbineSummary {
             name: name.to_owned(),
             model: setup.case.turbines[index].model.clone(),
@@ -147,8 +146,8 @@ impl<'a> Turbine<'a> {
             thrust,
             rotor_speed,
             pitch,
+            yaw_misalignment_deg: wind.as_ref().map(|wind| wind.misalignment_deg(yaw)),
             sectors: wind.map(|wind| wind.sectors).unwrap_or_default(),
-            yaw_misalignment_deg: misalignment,
             delivered_pitch,
             power_gain: None,
             pitch_response: control.kind().pitch_response(control),

@@ -13,7 +13,14 @@ pub(super) struct RotorWind {
     /// Wind on its quarters.
     pub(super) sectors: Vec<Sector>,
     /// Where the mean wind over it blows to, counter-clockwise from the axis of the planes (rad).
-    pub(super) direction: f64,
+    direction: f64,
+}
+
+impl RotorWind {
+    /// Turn of a nacelle from facing it (deg) that is turned from that axis by `yaw` (rad).
+    pub(super) fn misalignment_deg(&self, yaw: f64) -> f64 {
+        (yaw - self.direction).to_degrees()
+    }
 }
 
 /// The wind that comes to the rotor of turbine number `index` of `setup` while it is analysed; none where it

@@ -180,16 +180,17 @@ fn sectors() -> Vec<Sector> {
     ["up", "right", "down", "left"].map(sector).to_vec()
 }
 
+/// The excitation `set` with an offset, and until 800 s.
+fn late(set: PitchExcitation) -> PitchExcitation {
+    PitchExcitation { phase_offset_deg: Some(90.0), stop: Some(800.0), ..set }
+}
+
 fn full_turbine(name: &str, gain: Statistic) -> TurbineSummary {
     let axis = MeanderingAxis { amplitude: 7.5e6, reference: Some(5e6), factor: Some(1.5) };
     let plain = helix(Sense::CounterClockwise, 4.0);
-    let excitation = plain.excitation.map(|set| PitchExcitation {
-        phase_offset_deg: Some(90.0),
-        stop: Some(800.0),
-        ..set
-    });
-    let kinds = [LoadKind::Deviation, damage_equivalent(10.0)];
-    let loads = kinds.map(|kind| Load { change: Some(gain), ..load("RootMyb1", kind, 12_340.0) });
+    let excitation = plain.excitation.map(late);
+    let loads = [LoadKind::Deviation, damage_equivalent(10.0)]
+        .map(|kind| Load { change: Some(gain), ..load("RootMyb1", kind, 12_340.0) });
     TurbineSummary {
         rotor: Some(Rotor { diameter: 240.0, hub: [0.0, 0.0, 150.0], yaw_deg: 0.0 }),
         sectors: sectors(),
