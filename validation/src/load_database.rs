@@ -11,6 +11,7 @@ use design::SurrogateTrend;
 use design::regression::{KernelText, TrainQuestion, Trained, ValidateQuestion, train, validate};
 use flow::inflow::SECTOR_NAMES;
 use formats::atomic;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -98,16 +99,12 @@ fn made() -> Result<Vec<Row>, String> {
     }
     let is_aside = |line: &str| ASIDE.iter().any(|record| line.contains(record));
     apart(&folder, &table, &ASIDE.join(" and "), is_aside)?;
-    let mut winds = Vec::new();
+    let mut winds = BTreeMap::new();
     apart(&folder, &table, "three of ten winds", |line| {
         // Record and shift stand behind the number of the task and that of its blocks.
         let wind = line.splitn(5, ',').skip(2).take(2).collect::<Vec<_>>().join(",");
-        let known = winds.iter().position(|other| *other == wind);
-        let place = known.unwrap_or_else(|| {
-            winds.push(wind);
-            winds.len() - 1
-        });
-        place % 10 < 3
+        let next = winds.len();
+        *winds.entry(wind).or_insert(next) % 10 < 3
     })?;
     rows.extend(costs(&folder)?);
     Ok(rows)

@@ -131,15 +131,15 @@ fn a_turbine_meets_the_wake_or_the_wind_beside_it_and_a_break_changes_no_bit() {
     assert!(in_wake < 0.6 * beside, "{in_wake} W in the wake, {beside} W beside it");
 }
 
-#[test]
-fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
+/// [`SINK`] with a slice of steady wind of 9 m/s that blows across to the left by `across` (m/s).
+fn in_steady_wind(across: f32) -> tempfile::TempDir {
     let folder = written(SINK);
     let runs = folder.path().join("runs/baseline");
     fs::create_dir_all(&runs).expect("a folder");
     let steady = flow::inflow::TurbulenceBox::new(
         [61, 51, 17],
         [9.0, 10.0, 10.0],
-        std::array::from_fn(|_| vec![0.0; 61 * 51 * 17]),
+        [0.0, across, 0.0].map(|value| vec![value; 61 * 51 * 17]),
     );
     let stored = turbulence_box::StoredBox {
         turbulence: steady.expect("a box"),
@@ -150,6 +150,12 @@ fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
         description: "steady wind".to_owned(),
     };
     turbulence_box::write(&runs.join("slices-wake-2D.bts"), &stored).expect("a file");
+    folder
+}
+
+#[test]
+fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
+    let folder = in_steady_wind(0.0);
     let prepared =
         |setting: &str| Prepared::read(&folder.path().join("case.toml"), &[setting.to_owned()]);
     assert!(prepared("wind.seed=2").is_ok());
@@ -202,24 +208,7 @@ fn a_part_that_the_record_does_not_hold_is_refused_at_its_key() {
 /// to the left 5.55° are left.
 #[test]
 fn a_nacelle_is_turned_from_the_wind_over_its_rotor() {
-    let folder = written(SINK);
-    let runs = folder.path().join("runs/baseline");
-    fs::create_dir_all(&runs).expect("a folder");
-    let n_points = 61 * 51 * 17;
-    let across = flow::inflow::TurbulenceBox::new(
-        [61, 51, 17],
-        [9.0, 10.0, 10.0],
-        [vec![0.0; n_points], vec![0.7; n_points], vec![0.0; n_points]],
-    );
-    let stored = turbulence_box::StoredBox {
-        turbulence: across.expect("a box"),
-        hub_speed: 9.0,
-        hub_height: 90.0,
-        lowest_height: 10.0,
-        mean_speeds: vec![9.0; 17],
-        description: "wind that blows across".to_owned(),
-    };
-    turbulence_box::write(&runs.join("slices-wake-2D.bts"), &stored).expect("a file");
+    let folder = in_steady_wind(0.7);
     let options = StudyOptions {
         case: folder.path().join("case.toml"),
         output: Some(folder.path().join("out")),

@@ -135,13 +135,13 @@ impl<'a> Asked<'a> {
             || self.surrogates.iter().flat_map(|one| one.model.inputs.iter().zip(&one.sources));
         let is_own = |name: &str| ports().any(|(port, source)| source.is_given(&port.name, name));
         let refused = |key: String, name: &str| {
-            let own: BTreeSet<&str> =
-                ports().filter_map(|(port, source)| source.key(&port.name)).collect();
-            let own = own.into_iter().collect::<Vec<_>>().join(", ");
             if is_called(name, MISALIGNMENT) {
                 let problem = format!("{key}: {name} follows from the wind of the record");
                 return self.refused(problem, format!("give {YAW}, the turn from the axis"));
             }
+            let own: BTreeSet<&str> =
+                ports().filter_map(|(port, source)| source.key(&port.name)).collect();
+            let own = own.into_iter().collect::<Vec<_>>().join(", ");
             let problem = format!("{key}: no surrogate has the input {name}");
             self.refused(problem, format!("give one of {own}, or leave it out"))
         };

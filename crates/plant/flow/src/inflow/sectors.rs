@@ -78,7 +78,6 @@ impl PlaneMeans {
     /// [`InflowError::Outside`] where the disc leaves the planes to a side or above, [`InflowError::Setting`]
     /// for a radius that is not positive.
     pub fn sectors(&self, disc: Disc) -> Result<[Sector; 4], InflowError> {
-        positive("radius of a rotor (m)", disc.radius)?;
         check(&self.grid, disc)?;
         Ok(std::array::from_fn(|quarter| {
             let mean = |field: &[f64]| mean_over(&self.grid, disc, quarter, field);
@@ -96,7 +95,6 @@ impl PlaneMeans {
     /// # Errors
     /// As [`sectors`](Self::sectors).
     pub fn direction(&self, disc: Disc) -> Result<f64, InflowError> {
-        positive("radius of a rotor (m)", disc.radius)?;
         check(&self.grid, disc)?;
         // Quarters are of one area.
         let sum = |field: &[f64]| -> f64 {
@@ -106,8 +104,9 @@ impl PlaneMeans {
     }
 }
 
-/// Whether `disc` lies within the sides and the top of `grid`.
+/// Whether `disc` is one, and lies within the sides and the top of `grid`.
 fn check(grid: &PlaneGrid, disc: Disc) -> Result<(), InflowError> {
+    positive("radius of a rotor (m)", disc.radius)?;
     let ([left, right], [low, high]) = (grid.across(), grid.up());
     let places = [(-disc.radius, 0.0), (disc.radius, 0.0), (0.0, disc.radius)];
     for (aside, above) in places {
