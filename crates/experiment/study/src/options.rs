@@ -22,8 +22,12 @@ pub struct StudyOptions {
     pub dry_run: bool,
     /// In a dry run, check the rotors as well, as a run does before it begins.
     pub check: bool,
-    /// Runs to make at a time; as many as cores and memory carry when absent, where each takes one thread.
+    /// Runs to make at a time; as many as cores and memory carry when absent.
     pub jobs: Option<usize>,
+    /// Threads of a run whose case does not say; when absent all cores, which runs at a time share.
+    pub threads: Option<usize>,
+    /// The rotors were checked in another study, with the same cells and wind: they are only timed.
+    pub is_checked: bool,
     /// Winds in which every run is made, of as many seeds of the turbulence: a sweep of `wind.seed`.
     pub seeds: Option<usize>,
 }

@@ -202,8 +202,7 @@ impl<'a> All<'a> {
             return Ok(ControlFlow::Continue(1));
         };
         let n_runs = estimates.iter().map(|estimate| estimate.n_runs).sum();
-        let is_threaded = self.studies.iter().any(|opened| opened.prepared.plan.cells() > 0);
-        let n_jobs = jobs::number(options.jobs, n_runs, is_threaded, memory);
+        let n_jobs = jobs::number(options.jobs, n_runs, memory);
         let mut estimate = together(&estimates, n_jobs);
         observer.estimated(&estimate);
         check_memory(&estimate, self.studies[0].prepared.case.flow.solver)?;
@@ -216,7 +215,10 @@ impl<'a> All<'a> {
                 observer.warned(&warning.message);
             }
         }
-        let is_quick = options.dry_run && !options.check;
+        if let Some(threads) = options.threads {
+            self.use_threads(threads);
+        }
+        let is_quick = options.is_checked || options.dry_run && !options.check;
         if self.check_rotors(is_quick, n_jobs, stop, observer)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
@@ -226,12 +228,16 @@ impl<'a> All<'a> {
             observer.estimated(&estimate);
         }
         if n_jobs > 1 {
-            let each = (cores() / n_jobs).max(1);
-            for opened in &mut self.studies {
-                opened.prepared.case.flow.threads.get_or_insert(each);
-            }
+            self.use_threads((cores() / n_jobs).max(1));
         }
         Ok(ControlFlow::Continue(n_jobs))
+    }
+
+    /// Gives each run `threads` where its case does not say.
+    fn use_threads(&mut self, threads: usize) {
+        for opened in &mut self.studies {
+            opened.prepared.case.flow.threads.get_or_insert(threads);
+        }
     }
 
     /// What each study will cost; what several need identified is reckoned once.

@@ -61,7 +61,12 @@ impl Runs<'_> {
             return Ok(true);
         }
         let set = self.file.set.clone();
-        self.make(&folder.baseline(), vec![self.file.baseline.clone()], set)
+        let options = StudyOptions {
+            runs: vec![self.file.baseline.clone()],
+            overrides: set,
+            ..StudyOptions::default()
+        };
+        self.make(&folder.baseline(), options)
     }
 
     /// Makes `points`, the first of them number `first`, as many at a time as the file says; whether all are
@@ -75,6 +80,8 @@ impl Runs<'_> {
         first: usize,
         points: &[Vec<f64>],
     ) -> Result<bool, TuningError> {
+        let n = self.file.parallel.min(points.len());
+        let threads = (n > 1).then(|| (study::cores() / n).max(1));
         let (next, whole) = (AtomicUsize::new(0), AtomicBool::new(true));
         let failed = Mutex::new(None);
         let worker = || {
@@ -84,7 +91,7 @@ impl Runs<'_> {
                 if is_over {
                     return;
                 }
-                match self.point(folder, first + place, &points[place]) {
+                match self.point(folder, first + place, (&points[place], threads)) {
                     Ok(true) => {}
                     Ok(false) => whole.store(false, Ordering::Relaxed),
                     Err(error) => {
@@ -94,7 +101,6 @@ impl Runs<'_> {
                 }
             }
         };
-        let n = self.file.parallel.min(points.len());
         std::thread::scope(|scope| {
             for _ in 1..n {
                 scope.spawn(worker);
@@ -107,8 +113,13 @@ impl Runs<'_> {
         }
     }
 
-    /// Makes `point`, number `index`; whether it is complete.
-    fn point(&self, folder: &Folder, index: usize, point: &[f64]) -> Result<bool, TuningError> {
+    /// Makes `point`, number `index`, on so many `threads`; whether it is complete.
+    fn point(
+        &self,
+        folder: &Folder,
+        index: usize,
+        (point, threads): (&[f64], Option<usize>),
+    ) -> Result<bool, TuningError> {
         let place = folder.point(index);
         let own = vec![self.file.run.clone()];
         let runs = if self.file.is_of_run_alone() {
@@ -117,24 +128,25 @@ impl Runs<'_> {
         } else {
             [vec![self.file.baseline.clone()], own].concat()
         };
-        self.make(&place, runs, self.file.overrides(point))
+        let options = StudyOptions {
+            runs,
+            overrides: self.file.overrides(point),
+            threads,
+            // As the baseline was, of which it differs in control alone.
+            is_checked: self.file.is_of_run_alone(),
+            ..StudyOptions::default()
+        };
+        self.make(&place, options)
     }
 
-    /// Makes `runs` of the case with `overrides` in the folder `place`, or goes on with them.
-    fn make(
-        &self,
-        place: &Path,
-        runs: Vec<String>,
-        overrides: Vec<String>,
-    ) -> Result<bool, TuningError> {
+    /// Makes what `options` ask for of the case in the folder `place`, or goes on with it.
+    fn make(&self, place: &Path, options: StudyOptions) -> Result<bool, TuningError> {
         let options = StudyOptions {
             case: self.file.case.clone(),
             output: Some(place.to_owned()),
-            runs,
-            overrides,
             resume: records::is_begun(place),
             jobs: Some(1),
-            ..StudyOptions::default()
+            ..options
         };
         let outcome = study::run(&options, self.stop, &mut Told(self.watcher))?;
         Ok(matches!(outcome, Outcome::Done { .. }))

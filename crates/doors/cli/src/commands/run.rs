@@ -37,8 +37,8 @@ pub(crate) struct RunArguments {
     /// intervals over them
     #[arg(long, value_name = "N", value_parser = arguments::seeds)]
     seeds: Option<usize>,
-    /// Runs to make at a time; when left out one in resolved flow, which uses all cores by itself, and in
-    /// prescribed wind as many as cores and memory carry. The results are the same
+    /// Runs to make at a time, which share the cores; when left out as many as cores and memory carry. The
+    /// results are the same
     #[arg(long, value_name = "N", value_parser = arguments::jobs)]
     jobs: Option<usize>,
     /// Override a key of the case, as in `--set wind.speed=8` (may be repeated)
@@ -78,6 +78,7 @@ pub(crate) fn run(arguments: &RunArguments) -> ExitCode {
         check: arguments.check,
         jobs: arguments.jobs,
         seeds: arguments.seeds,
+        ..StudyOptions::default()
     };
     let mut screen = Screen::new(&arguments.case);
     let outcome = study::run(&options, &stop, &mut screen);
