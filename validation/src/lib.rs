@@ -52,6 +52,7 @@ pub mod structure;
 mod studies;
 pub mod synthesis;
 pub mod tuning;
+pub mod tuning_array;
 pub mod tunnel;
 pub mod wake_analysis;
 

@@ -372,6 +372,7 @@ pub const VALIDATIONS: &[Validation] = &[
         page: "tuning",
         recorded: include_str!("../recorded/tuning.toml"),
     },
+    desk::TUNING_ARRAY,
     desk::LOAD_DATABASE,
     Validation {
         name: "wake-analysis",

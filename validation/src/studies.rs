@@ -69,6 +69,20 @@ impl campaign::Observer for Lines {
     }
 }
 
+impl tuning::Watch for Lines {
+    fn proposed(&mut self, first: usize, n_runs: usize, words: &[String], gain: Option<f64>) {
+        let expected = gain.map_or_else(String::new, |gain| {
+            format!(
+                "; {:.2} % of the array's power more than the best so far are expected",
+                100.0 * gain
+            )
+        });
+        for (place, words) in words.iter().enumerate() {
+            tell!("run {} of {n_runs} at most: {words}{expected}", first + place + 1);
+        }
+    }
+}
+
 /// Name of the file in a study's folder that tells which build of the program made it.
 const MADE_BY: &str = "made-by.sha256";
 

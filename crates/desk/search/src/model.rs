@@ -247,6 +247,28 @@ impl Model {
         Ok(Self { processes: self.processes.iter().map(one).collect::<Result<_, _>>()? })
     }
 
+    /// The model with its hyperparameters, had scaled `points`, evaluated in `n_blocks` each, given what is
+    /// expected there, and nothing else were known.
+    ///
+    /// # Errors
+    /// [`SearchError::Surrogate`].
+    pub(crate) fn instead(&self, points: &[Vec<f64>], n_blocks: f64) -> Result<Self, SearchError> {
+        let values: Vec<f64> = self.at(points)?.iter().map(|value| value.mean).collect();
+        let one = |one: &Process| {
+            let observations = Observations {
+                inputs: points.concat(),
+                n_dimensions: one.process.observations().n_dimensions,
+                values: values.clone(),
+                variances: vec![one.noise / n_blocks; points.len()],
+            };
+            let parameters = one.process.hyperparameters().clone();
+            let process =
+                GaussianProcess::new(one.shape, parameters, observations, Mean::Constant)?;
+            Ok::<_, SearchError>(Process { process, shape: one.shape, noise: one.noise })
+        };
+        Ok(Self { processes: self.processes.iter().map(one).collect::<Result<_, _>>()? })
+    }
+
     /// `n` curves drawn from the mixture at scaled `points`, in random order.
     ///
     /// # Errors

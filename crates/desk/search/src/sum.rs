@@ -145,6 +145,17 @@ impl Sum {
         Ok(Self { models: models.collect::<Result<_, _>>()?, ..self.clone() })
     }
 
+    /// The same with its hyperparameters as though evaluations at `points`, and no others, had given what is
+    /// expected there: how well another choice of points would have told the sum.
+    ///
+    /// # Errors
+    /// [`SearchError::Surrogate`].
+    pub fn instead(&self, points: &[Vec<f64>]) -> Result<Self, SearchError> {
+        let scaled = self.scaled(points);
+        let models = self.models.iter().map(|model| model.instead(&scaled, self.n_blocks));
+        Ok(Self { models: models.collect::<Result<_, _>>()?, ..self.clone() })
+    }
+
     /// Blocks of an evaluation (–).
     pub(crate) fn n_blocks(&self) -> f64 {
         self.n_blocks

@@ -74,6 +74,32 @@ fn the_optimum_of_two_turbines_is_found_from_few_noisy_evaluations() {
     assert!(left <= 2, "{left} of 6 true values outside their interval");
 }
 
+/// Points that were evaluated, evaluated anew in place of all, tell as much and, to the noise, the same;
+/// ever more of them in their place tell more, and fewer less, where the sum is asked for.
+#[test]
+fn other_points_in_place_of_those_evaluated_tell_what_they_are_worth() {
+    let space = Space::new(vec![Axis::new(0.05, 1.0), Axis::new(0.5, 6.0)]).expect("ranges");
+    let mut normal = normals(7);
+    let settings = Settings { weights: vec![1.0; 2], n_first: 6, budget: 12, ..Settings::of_one() };
+    let found = maximise(&space, &settings, |proposal| {
+        each(proposal, |point| {
+            let [first, second] = array([point[0], point[1]]);
+            vec![blocks(first, 0.004, &mut normal), blocks(second, 0.02, &mut normal)]
+        })
+    })
+    .expect("a search");
+    let asked = std::slice::from_ref(&found.optimum.point);
+    let at = |sum: &Sum| sum.at(asked).expect("a point")[0];
+    let instead = |points: &[Vec<f64>]| at(&found.sum.instead(points).expect("points"));
+    let (own, again) = (at(&found.sum), instead(&found.history.points));
+    assert!((again.mean - own.mean).abs() < own.deviation, "{again:?} for {own:?}");
+    // Readings that are what is expected set processes of other lengths less apart than noisy ones do.
+    assert!(again.deviation <= own.deviation * (1.0 + 1e-9), "{again:?} for {own:?}");
+    assert!(again.deviation > 0.5 * own.deviation, "{again:?} for {own:?}");
+    let deviations = [3, 6, 12, 24].map(|most| instead(&space.lattice(most)).deviation);
+    assert!(deviations.is_sorted_by(|a, b| a > b), "{deviations:?}");
+}
+
 /// One variable with a step: the place is found to a step, and every way of choosing gets there.
 #[test]
 fn every_acquisition_finds_the_summit_of_a_curve() {
