@@ -70,19 +70,21 @@ pub enum ControlError {
     },
     /// Noise that the pitch actuator cannot follow.
     #[error(
-        "noise_amplitude_deg = {amplitude_deg} up to noise_to_hz = {frequency} Hz asks for {asked_deg:.1}°/s of pitch, the actuator has {most_deg:.1}°/s: lower noise_to_hz to {most_frequency:.2} Hz or less, or the amplitude"
+        "noise_amplitude_deg = {amplitude_deg} up to noise_to_hz = {frequency} Hz on a helix of {helix_deg}° ask for up to {asked_deg:.1}°/s of pitch at rated rotor speed, the actuator has {most_deg:.1}°/s: {fix}"
     )]
     NoiseTooFast {
         /// Amplitude of the noise (deg).
         amplitude_deg: f64,
         /// Upper end of its band (Hz).
         frequency: f64,
-        /// Pitch rate of a wave of that amplitude and frequency (deg/s).
+        /// Amplitude of the helix beneath (deg).
+        helix_deg: f64,
+        /// Fastest pitch of a blade under both (deg/s).
         asked_deg: f64,
         /// The actuator's fastest (deg/s).
         most_deg: f64,
-        /// Upper end of a band that it can follow, rounded down (Hz).
-        most_frequency: f64,
+        /// What would mend it.
+        fix: String,
     },
     /// Nothing runs on a turbine that is not there.
     #[error("the turbine is not there in this run")]

@@ -189,6 +189,12 @@ impl LinearModel {
         if !self.output_delay_s.is_finite() || self.output_delay_s < 0.0 {
             return Err("`output_delay_s` is below 0".to_owned());
         }
+        if self.interval_s.is_none() && self.output_delay_s > 0.0 {
+            return Err(format!(
+                "`output_delay_s` = {} stands beside no `interval_s`: a delay is counted in samples; sample the model, or put Padé's approximant of the delay into the matrices",
+                self.output_delay_s
+            ));
+        }
         Ok(())
     }
 }
@@ -237,6 +243,10 @@ mod tests {
         fs::write(&path, "{\n\"format\": 3}").unwrap();
         let said = LinearModel::read(&path, Role::Model).unwrap_err().to_string();
         assert!(said.contains("line 2"), "{said}");
+        let continuous = LinearModel { interval_s: None, ..sample() };
+        continuous.write(&path).unwrap();
+        let said = LinearModel::read(&path, Role::Model).unwrap_err().to_string();
+        assert!(said.contains("`output_delay_s` = 11.2 stands beside no `interval_s`"), "{said}");
         let missing = LinearModel::read(&folder.path().join("none.json"), Role::Model)
             .unwrap_err()
             .to_string();

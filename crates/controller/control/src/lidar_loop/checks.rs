@@ -65,6 +65,16 @@ pub(crate) fn no_lidar(values: &Values, place: &Place) -> Option<Objection> {
             "looks upwind",
             format!("leave out `looks` of sensors.{name} of {turbine}, or name another lidar"),
         ),
+        Some(lidar) if lidar.values.numbers("ranges_diameters").len() > 1 => (
+            format!(
+                "= \"{name}\" measures at {} ranges, and a controller follows the hub vortex in one plane",
+                lidar.values.numbers("ranges_diameters").len()
+            ),
+            "several ranges",
+            format!(
+                "give sensors.{name} of {turbine} one range, such as ranges_diameters = [1.0], or name another lidar"
+            ),
+        ),
         Some(_) => return None,
     };
     Some(Objection { key: Some("lidar"), message, label, fix })

@@ -110,11 +110,13 @@ impl ControllerKind for ProbingKind {
         let frame = HelixFrame { sense: sense(values), rate: site.rate(values.number("strouhal")) };
         let band = ["noise_from_hz", "noise_to_hz"].map(|key| TAU * values.number(key));
         let start = values.number("start");
-        let noise = values.angle("noise_amplitude_deg");
-        follows(noise, band[1], site.rotor.pitch_actuator.maximum_rate)?;
+        let [helix, noise] = ["amplitude_deg", "noise_amplitude_deg"].map(|key| values.angle(key));
+        let turning = site.constants.rated_rotor_speed + frame.rate;
+        let most = site.rotor.pitch_actuator.maximum_rate;
+        Asked { helix, noise, turning, upper: band[1] }.follows(most)?;
         let probing = Probing {
             frame,
-            helix: frame.open_helix(values.angle("amplitude_deg"), values.angle("phase_deg")),
+            helix: frame.open_helix(helix, values.angle("phase_deg")),
             noise,
             azimuth_offset: values.angle("azimuth_offset_deg"),
             starts: [start, values.optional_number("noise_start").unwrap_or(start)],
@@ -144,38 +146,96 @@ impl ControllerKind for ProbingKind {
     }
 }
 
-/// Whether an actuator of the rate `most` (rad/s) follows a wave of the size `noise` (rad) at the upper end
-/// of its band, `upper` (rad/s).
-///
-/// # Errors
-/// [`ControlError::NoiseTooFast`].
-fn follows(noise: f64, upper: f64, most: f64) -> Result<(), ControlError> {
-    let asked = noise * upper;
-    if asked <= most {
-        return Ok(());
+/// What is asked of a blade's pitch.
+struct Asked {
+    /// Amplitude of the helix, and of the noise on each of its axes (rad).
+    helix: f64,
+    noise: f64,
+    /// Rate of the helix frame as a blade sees it, at most: rated rotor speed and the helix's (rad/s).
+    turning: f64,
+    /// Upper end of the noise's band (rad/s).
+    upper: f64,
+}
+
+impl Asked {
+    /// Fastest pitch (rad/s): the helix turns with its frame, and so does noise on both axes, which changes
+    /// in it too.
+    fn rate(&self) -> f64 {
+        let noise = std::f64::consts::SQRT_2 * self.noise;
+        self.helix * self.turning + noise * (self.turning + self.upper)
     }
-    Err(ControlError::NoiseTooFast {
-        amplitude_deg: noise.to_degrees(),
-        frequency: upper / TAU,
-        asked_deg: asked.to_degrees(),
-        most_deg: most.to_degrees(),
+
+    /// Whether an actuator of the rate `most` (rad/s) follows; one without noise is a helix, which has no
+    /// band to be lowered.
+    ///
+    /// # Errors
+    /// [`ControlError::NoiseTooFast`].
+    fn follows(&self, most: f64) -> Result<(), ControlError> {
+        let asked = self.rate();
+        if self.noise == 0.0 || asked <= most {
+            return Ok(());
+        }
+        let left = most - (asked - std::f64::consts::SQRT_2 * self.noise * self.upper);
+        let frequency = left / (std::f64::consts::SQRT_2 * self.noise) / TAU;
         // Rounded down, so that what is printed can be taken.
-        most_frequency: (100.0 * most / noise / TAU).floor() / 100.0,
-    })
+        let frequency = (100.0 * frequency).floor() / 100.0;
+        Err(ControlError::NoiseTooFast {
+            amplitude_deg: self.noise.to_degrees(),
+            frequency: self.upper / TAU,
+            helix_deg: self.helix.to_degrees(),
+            asked_deg: asked.to_degrees(),
+            most_deg: most.to_degrees(),
+            fix: if frequency > 0.0 {
+                format!("lower noise_to_hz to {frequency:.2} Hz or less, or an amplitude")
+            } else {
+                "lower noise_amplitude_deg or amplitude_deg".to_owned()
+            },
+        })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::SQRT_2;
 
     #[test]
     fn noise_is_no_faster_than_the_actuator() {
-        let [noise, rate] = [5.0_f64, 8.0].map(f64::to_radians);
-        assert!(follows(noise, TAU * 0.25, rate).is_ok());
-        let error = follows(noise, TAU * 10.0, rate).expect_err("314°/s").to_string();
-        assert!(error.contains("asks for 314.2°/s") && error.contains("has 8.0°/s"), "{error}");
-        assert!(error.contains("noise_to_hz to 0.25 Hz or less"), "{error}");
+        let [helix, noise, most] = [3.0_f64, 1.0, 8.0].map(f64::to_radians);
+        let asked = |hertz: f64| Asked { helix, noise, turning: 1.4, upper: TAU * hertz };
+        // By hand: 3·1.4 + √2·(1.4 + 2π·0.1), °/s.
+        let by_hand = 4.2 + SQRT_2 * (1.4 + 0.2 * std::f64::consts::PI);
+        assert!((asked(0.1).rate().to_degrees() - by_hand).abs() < 1e-12);
+        assert!(asked(0.2).follows(most).is_ok());
+        let error = asked(10.0).follows(most).expect_err("95°/s").to_string();
+        assert!(error.contains("ask for up to 95.0°/s") && error.contains("has 8.0°/s"), "{error}");
+        assert!(error.contains("noise_to_hz to 0.20 Hz or less"), "{error}");
+        // A helix that leaves nothing for noise.
+        let wide = Asked { helix: 2.0 * helix, ..asked(0.1) };
+        let error = wide.follows(most).expect_err("8.4°/s alone").to_string();
+        assert!(error.contains("lower noise_amplitude_deg or amplitude_deg"), "{error}");
         // No noise is never too fast.
-        assert!(follows(0.0, TAU * 10.0, rate).is_ok());
+        assert!(Asked { noise: 0.0, ..asked(10.0) }.follows(most).is_ok());
+    }
+
+    /// The fastest pitch of one blade under the loudest noise comes to what is asked for.
+    #[test]
+    fn no_pitch_is_faster_than_what_is_said() {
+        let asked = Asked { helix: 0.05, noise: 0.02, turning: 1.4, upper: 0.6 };
+        // Tilt and yaw of the helix and of noise that turns as fast as its band lets it, seen by a blade.
+        let pitch = |t: f64| {
+            let (sine, cosine) = (asked.turning * t).sin_cos();
+            let (wave, other) = (asked.upper * t).sin_cos();
+            let [tilt, yaw] = [asked.noise * (wave + other), asked.noise * (other - wave)];
+            asked.helix * cosine + tilt * cosine + yaw * sine
+        };
+        let step = 1e-3;
+        let rates = (0..400_000).map(|i| {
+            let t = f64::from(i) * step;
+            ((pitch(t + step) - pitch(t)) / step).abs()
+        });
+        let fastest = rates.fold(0.0, f64::max);
+        assert!(fastest <= asked.rate() * (1.0 + 1e-6), "{fastest}");
+        assert!(fastest >= 0.9 * asked.rate(), "{fastest} {}", asked.rate());
     }
 }

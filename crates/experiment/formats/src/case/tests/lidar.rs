@@ -5,7 +5,7 @@ use crate::case::{Case, parse, write};
 
 /// The small case whose first turbine has an anemometer and two lidars, under `control`.
 fn with(control: &str) -> String {
-    let sensors = "[[turbine]]\nsensors.anemometer = { kind = \"anemometer\" }\nsensors.lidar = { kind = \"lidar\" }\nsensors.eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, focal_distance_diameters = 2.0 }\n";
+    let sensors = "[[turbine]]\nsensors.anemometer = { kind = \"anemometer\" }\nsensors.lidar = { kind = \"lidar\" }\nsensors.eye = { kind = \"lidar\", looks = \"upwind\", downwind = 5.0, focal_distance_diameters = 2.0 }\nsensors.pulses = { kind = \"lidar\", ranges_diameters = [0.5, 1.0] }\n";
     let helix = "{ kind = \"helix\", sense = \"ccw\", amplitude_deg = 4.0, strouhal = 0.25 }";
     assert!(SMALL.contains("[[turbine]]\n") && SMALL.contains(helix));
     SMALL.replacen("[[turbine]]\n", sensors, 1).replacen(helix, control, 1)
@@ -84,6 +84,10 @@ fn a_family_that_cannot_be_is_told_with_its_key_and_fix() {
         (
             "controller = \"law.json\", lidar = \"eye\"".to_owned(),
             "lidar` = \"eye\" looks upwind, and the own wake is downwind; leave out `looks`",
+        ),
+        (
+            "controller = \"law.json\", lidar = \"pulses\"".to_owned(),
+            "lidar` = \"pulses\" measures at 2 ranges, and a controller follows the hub vortex in one plane; give sensors.pulses of T1 one range",
         ),
         ("controller = 8".to_owned(), "controller` must be a file in quotes, or control.T1.contr"),
         ("controller = []".to_owned(), "controller` must be one control.T1.controller"),
