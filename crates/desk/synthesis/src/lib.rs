@@ -7,7 +7,7 @@
 //! | a controller | [`h_infinity`], [`h2`], [`lqg`], [`lqg_with_integral_action`] |
 //! | a controller beside a delay | [`smith_predictor`] |
 //! | fewer states | [`reduced_to_order`], [`reduced_to_tolerance`] |
-//! | how well it does | [`Loop`], [`step_response`] |
+//! | how well it does | [`Loop`], [`step_response`], with a delay [`predicted_margins`] |
 //!
 //! Negative feedback throughout: u = K (r − y).
 
@@ -21,6 +21,7 @@ mod loop_analysis;
 mod lqg;
 mod margins;
 mod normalised;
+mod predicted;
 mod reduction;
 mod smith_predictor;
 mod weights;
@@ -35,6 +36,7 @@ pub use h2::{H2, h2};
 pub use loop_analysis::{Loop, step_response};
 pub use lqg::{LqgWeights, lqg, lqg_with_integral_action};
 pub use margins::{ChannelMargins, DiscMargin};
+pub use predicted::{PredictedMargins, predicted_margins};
 pub use reduction::{Reduced, reduced_to_order, reduced_to_tolerance};
 pub use smith_predictor::smith_predictor;
 pub use weights::{control_weight, performance_weight};

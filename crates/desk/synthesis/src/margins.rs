@@ -4,7 +4,7 @@ use crate::loop_analysis::{Loop, in_continuous_time, in_its_time, sensitivity};
 use faer::Mat;
 use lti::Complex64;
 use lti::matrices::dense::{blocks, identity};
-use lti::matrices::{MatrixError, StateSpace, lower_fractional, parallel};
+use lti::matrices::{MatrixError, PeakGain, StateSpace, lower_fractional, parallel};
 use std::f64::consts::{PI, TAU};
 
 /// Relative distance (–) from a crossing up to which a frequency is one.
@@ -71,11 +71,45 @@ impl Loop {
 /// 40, 2020, Eqs. 17 and 20.
 fn disc_margin(open: &StateSpace) -> Result<DiscMargin, MatrixError> {
     let half = StateSpace::gain(-0.5 * identity(open.outputs()), open.interval);
-    let peak = parallel(&sensitivity(open)?, &half)?.h_infinity_norm()?;
-    let size = peak.gain.recip();
-    let low = ((2.0 - size) / (2.0 + size)).max(0.0);
-    let phase = 2.0 * (0.5 * size).atan();
-    Ok(DiscMargin { size, gain: [low, low.recip()], phase, frequency: peak.frequency })
+    Ok(DiscMargin::of(parallel(&sensitivity(open)?, &half)?.h_infinity_norm()?))
+}
+
+impl DiscMargin {
+    /// Of the `peak` of (S − T)/2.
+    pub(crate) fn of(peak: PeakGain) -> Self {
+        let size = peak.gain.recip();
+        let low = ((2.0 - size) / (2.0 + size)).max(0.0);
+        let phase = 2.0 * (0.5 * size).atan();
+        Self { size, gain: [low, low.recip()], phase, frequency: peak.frequency }
+    }
+}
+
+impl ChannelMargins {
+    /// Takes that the open loop is real somewhere, of this `value`.
+    pub(crate) fn take_real(&mut self, value: f64) {
+        if value >= 0.0 {
+            return;
+        }
+        let factor = -value.recip();
+        if factor > 1.0 {
+            lower(&mut self.gain_increase, factor);
+        } else {
+            let largest = self.gain_decrease.map_or(factor, |found| found.max(factor));
+            self.gain_decrease = Some(largest);
+        }
+    }
+
+    /// Takes that the open loop is of unit modulus at `frequency` (rad/s), of this `value`.
+    pub(crate) fn take_unit(&mut self, value: Complex64, frequency: f64) {
+        let phase = PI - value.arg().abs();
+        if self.phase.is_none_or(|found| phase < found) {
+            self.phase = Some(phase);
+            self.crossover = Some(frequency);
+        }
+        if frequency > 0.0 {
+            lower(&mut self.delay, (value.arg() + PI).rem_euclid(TAU) / frequency);
+        }
+    }
 }
 
 /// Margins of each channel of a square open loop.
@@ -98,29 +132,15 @@ fn margins(open: &StateSpace) -> Result<ChannelMargins, MatrixError> {
     let mut margins = ChannelMargins::default();
     let mut real = real_responses(&system)?;
     real.push(system.d[(0, 0)]);
-    for value in real.into_iter().filter(|value| *value < 0.0) {
-        let factor = -value.recip();
-        if factor > 1.0 {
-            lower(&mut margins.gain_increase, factor);
-        } else {
-            let largest = margins.gain_decrease.map_or(factor, |found| found.max(factor));
-            margins.gain_decrease = Some(largest);
-        }
+    for value in real {
+        margins.take_real(value);
     }
     for warped in system.frequencies_with_gain(1.0)? {
         let Some(value) = value_at(&system, warped) else { continue };
         if (value.norm() - 1.0).abs() > AT_CROSSING {
             continue;
         }
-        let frequency = in_its_time(warped, interval);
-        let phase = PI - value.arg().abs();
-        if margins.phase.is_none_or(|found| phase < found) {
-            margins.phase = Some(phase);
-            margins.crossover = Some(frequency);
-        }
-        if frequency > 0.0 {
-            lower(&mut margins.delay, (value.arg() + PI).rem_euclid(TAU) / frequency);
-        }
+        margins.take_unit(value, in_its_time(warped, interval));
     }
     Ok(margins)
 }

@@ -3,6 +3,7 @@
 use crate::WeightProblem;
 use formats::FileError;
 use identification::IdentificationError;
+use lti::Complex64;
 use lti::matrices::MatrixError;
 use miette::Diagnostic;
 use report::ReportError;
@@ -51,6 +52,27 @@ pub enum DesignError {
         /// Why.
         source: SynthesisError,
     },
+    /// A model with a mode that is not stable and that no controller holds.
+    #[error(
+        "{}: `A` has a mode at {} = {mode:.4} that is not stable and that no {} it (`{}`)",
+        path.display(),
+        if *sampled { "z" } else { "s" },
+        if *moved { "output shows" } else { "input moves" },
+        if *moved { "C" } else { "B" }
+    )]
+    #[diagnostic(help(
+        "identify a model of lower order (--order), which leaves a mode out that the record hardly tells, or take the state out of `A`, `B` and `C`"
+    ))]
+    HiddenMode {
+        /// The model.
+        path: PathBuf,
+        /// The mode: – in discrete time, rad/s in continuous time.
+        mode: Complex64,
+        /// Whether inputs move it.
+        moved: bool,
+        /// Whether the model is in discrete time.
+        sampled: bool,
+    },
     /// A weight that cannot be one.
     #[error("{}: {place} {problem}", path.display())]
     #[diagnostic(help("{}", problem.fix()))]
@@ -90,6 +112,9 @@ fn fix_of(error: &SynthesisError) -> &'static str {
     match error {
         SynthesisError::UnstableModel(_) => {
             "identify a model of another order, of samples further apart, or without its delay (`output_delay_s`)"
+        }
+        SynthesisError::FreeControl { .. } => {
+            "give [control] (--weights) a weight that does not fall off at high frequency: without one, controls cost nothing and grow without bound"
         }
         SynthesisError::DirectDisturbance => {
             "give [performance] as `numerator` and `denominator` whose numerator has the lower order, for an H2 norm wants a weight that falls off, or take method = \"h-infinity\" (--weights)"

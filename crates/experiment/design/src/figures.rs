@@ -11,14 +11,14 @@ use std::f64::consts::TAU;
 pub(crate) fn of_identified(found: &Identified) -> Signals {
     Signals {
         densities: vec![frequency_response(found)],
-        tracks: vec![singular_values(found)],
+        tracks: vec![phases(found), singular_values(found)],
         ..Signals::default()
     }
 }
 
 /// The figures of what was synthesised.
 pub(crate) fn of_synthesized(found: &Synthesized) -> Signals {
-    let mut tracks = vec![sensitivities(&found.responses)];
+    let mut tracks = vec![sensitivities(found)];
     tracks.extend(by_channel(&found.responses));
     tracks.extend(step_responses(found));
     Signals { tracks, ..Signals::default() }
@@ -57,9 +57,45 @@ fn frequency_response(found: &Identified) -> DensityFigure {
             .to_owned(),
         lowest_frequency: Some(step),
         highest_frequency: last_told(&found.response) / TAU,
-        marks: Vec::new(),
+        marks: vec![(found.bandwidth / TAU, "of interest".to_owned())],
         band: None,
         rows,
+    }
+}
+
+/// Phase of every path over frequency, record and model.
+fn phases(found: &Identified) -> TrackFigure {
+    let response = &found.response;
+    let highest = last_told(response);
+    let n = response.frequencies.iter().take_while(|rate| **rate <= highest).count();
+    let [inputs, outputs] = [&found.model.inputs, &found.model.outputs];
+    let mut rows = Vec::new();
+    for (i, output) in outputs.iter().enumerate() {
+        for (j, input) in inputs.iter().enumerate() {
+            let line = |name: &str, colour: usize, of: &[Vec<Vec<lti::Complex64>>]| TrackLine {
+                name: name.to_owned(),
+                colour,
+                times: response.frequencies[..n].iter().map(|rate| rate.log10()).collect(),
+                values: of[..n].iter().map(|at| at[i][j].arg().to_degrees()).collect(),
+                band: Vec::new(),
+            };
+            rows.push(TrackRow {
+                label: format!("{} / {}", short(&output.name), short(&input.name)),
+                is_angle: true,
+                lines: vec![
+                    line("record", 0, &response.measured),
+                    line("model", 1, &response.modelled),
+                ],
+            });
+        }
+    }
+    TrackFigure {
+        along: Along { label: "log₁₀ of frequency in rad/s", unit: "" },
+        name: "phase-response".to_owned(),
+        title: "Phase response".to_owned(),
+        caption: "Phase of each output behind each input, the delay that was given aside: of the record, averaged spectra, and of the model. Dashed: the frequency of interest.".to_owned(),
+        rows,
+        mark: Some(found.bandwidth.log10()),
     }
 }
 
@@ -137,7 +173,8 @@ fn by_channel(responses: &LoopResponses) -> Option<TrackFigure> {
 }
 
 /// S, T and K S with the bounds of their weights.
-fn sensitivities(responses: &LoopResponses) -> TrackFigure {
+fn sensitivities(found: &Synthesized) -> TrackFigure {
+    let responses = &found.responses;
     let rows = SHAPED.into_iter().zip(&responses.gains).zip(&responses.bounds);
     let rows = rows
         .map(|((what, gains), bounds)| shaped(responses, format!("{what} (dB)"), gains, bounds));
@@ -145,10 +182,10 @@ fn sensitivities(responses: &LoopResponses) -> TrackFigure {
         along: Along { label: "log₁₀ of frequency in rad/s", unit: "" },
         name: "sensitivities".to_owned(),
         title: "Sensitivities".to_owned(),
-        caption: "Largest singular values of sensitivity S, complementary sensitivity T and control K S, the delay aside; the weights ask them to stay below γ times their lines."
+        caption: "Largest singular values of sensitivity S, complementary sensitivity T and control K S, the delay aside; the weights ask them to stay below γ times their lines. Dashed: the bandwidth."
             .to_owned(),
         rows: rows.collect(),
-        mark: None,
+        mark: found.bandwidth.map(f64::log10),
     }
 }
 

@@ -78,6 +78,8 @@ pub struct Identified {
     pub azimuth_offset_at_bandwidth: Option<Offset>,
     /// Frequency response of record and model.
     pub response: Responses,
+    /// Frequency of interest that was asked for (rad/s).
+    pub bandwidth: f64,
 }
 
 /// Poles or zeros of a system in discrete time, the slowest first.
@@ -161,6 +163,7 @@ fn found(question: &IdentifyQuestion, data: &Data) -> Result<Identified, Identif
         azimuth_offset_at_bandwidth: offset(system, nearest_azimuth_offset(system, rate), rate),
         gain: rows(&gain),
         response: responses(&record, system)?,
+        bandwidth: rate,
         model: in_a_file(data, &found, shift as f64 * interval, means),
     })
 }

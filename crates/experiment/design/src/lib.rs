@@ -29,5 +29,6 @@ pub use identification::Trend;
 pub use identify::{Identified, IdentifyQuestion, Offset, Responses, Roots, identify};
 pub use pages::{report_identified, report_synthesized};
 pub use surrogate::{Trend as SurrogateTrend, Validation as SurrogateValidation};
+pub use synthesis::{ChannelMargins, DiscMargin, PredictedMargins};
 pub use synthesize::{ChannelResponse, LoopResponses, SynthesizeQuestion, Synthesized, synthesize};
 pub use weights::{Method, WeightProblem};

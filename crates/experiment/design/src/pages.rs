@@ -1,7 +1,7 @@
 //! Pages of a model and of a controller.
 
 use crate::figures::{of_identified, of_synthesized};
-use crate::{DesignError, Identified, Roots, Synthesized};
+use crate::{ChannelMargins, DesignError, DiscMargin, Identified, Roots, Synthesized};
 use formats::linear_model::{LinearModel, Port};
 use lti::Complex64;
 use report::{AnswerRecords, AnswerTable};
@@ -79,7 +79,7 @@ pub fn report_synthesized(
         },
         warnings: Vec::new(),
         facts: facts_of_controller(found),
-        tables: vec![margins(found)],
+        tables: margins(found),
         signals: vec![of_synthesized(found)],
         file: Some(["The controller".to_owned(), found.controller.to_text()]),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -128,19 +128,33 @@ fn facts_of_controller(found: &Synthesized) -> Vec<[String; 3]> {
     let predictor = format!("{whole} with a predictor of {} samples", found.delay_samples);
     facts.push(fact("Order", inner, if found.delay_samples > 0 { &predictor } else { "" }));
     let bandwidth = found.bandwidth.map_or("–".to_owned(), |rate| format!("{rate:.4} rad/s"));
-    facts.push(fact("Bandwidth", bandwidth, "the delay aside"));
+    let aside = if found.with_delay.is_some() { "without the delay" } else { "" };
+    facts.push(fact("Bandwidth", bandwidth, aside));
     let [s, t] = found.peaks;
-    facts.push(fact("Peaks", format!("{s:.3}, {t:.3}"), "of S and T"));
-    let disc = &found.disc;
+    facts.push(fact("Peaks", format!("{s:.3}, {t:.3}"), format!("of S and T {aside}").trim_end()));
+    facts.push(disc_margin(&found.disc, aside));
+    if let Some(delayed) = &found.with_delay {
+        let with = "with the delay and its predictor";
+        let peak = format!("{:.3}", delayed.sensitivity.gain);
+        facts.push(fact("Peak", peak, format!("of S {with}")));
+        facts.push(disc_margin(&delayed.disc, with));
+        let [shorter, longer] = delayed.mismatch.map(|time| dash(time, 2));
+        let remark =
+            "s shorter, s longer than the predicted one may the true delay of all outputs be";
+        facts.push(fact("Delay that differs", format!("{shorter}, {longer}"), remark));
+    }
+    facts
+}
+
+fn disc_margin(disc: &DiscMargin, how: &str) -> [String; 3] {
     let remark = format!(
-        "of all outputs at once: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s",
+        "of all outputs at once {how}: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s",
         disc.gain[0],
         disc.gain[1],
         disc.phase.to_degrees(),
         disc.frequency
     );
-    facts.push(fact("Disc margin", format!("{:.3}", disc.size), remark));
-    facts
+    fact("Disc margin", format!("{:.3}", disc.size), remark.replace(" :", ":"))
 }
 
 /// A complex number as text.
@@ -230,11 +244,20 @@ fn relative(how: &str, [rest, there]: &[Vec<Vec<f64>>; 2], model: &LinearModel) 
     }
 }
 
-fn margins(found: &Synthesized) -> AnswerTable {
-    let dash = |value: Option<f64>, digits: usize| {
-        value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
-    };
-    let rows = found.controller.inputs.iter().zip(&found.margins).map(|(port, margins)| {
+/// What each output stands by itself, without the delay and with it.
+fn margins(found: &Synthesized) -> Vec<AnswerTable> {
+    let aside = found.with_delay.as_ref().map_or("", |_| ", without the delay");
+    let mut tables = vec![margins_of(found, &found.margins, aside)];
+    tables.extend(
+        found.with_delay.as_ref().map(|delayed| {
+            margins_of(found, &delayed.channels, ", with the delay and its predictor")
+        }),
+    );
+    tables
+}
+
+fn margins_of(found: &Synthesized, margins: &[ChannelMargins], what: &str) -> AnswerTable {
+    let rows = found.controller.inputs.iter().zip(margins).map(|(port, margins)| {
         vec![
             port.name.clone(),
             dash(margins.gain_increase, 2),
@@ -247,9 +270,15 @@ fn margins(found: &Synthesized) -> AnswerTable {
     let headings =
         ["Output", "gain up", "gain down", "phase (°)", "delay (s)", "crossover (rad/s)"];
     AnswerTable {
-        caption: "Margins of one output opened at a time, the others closed, the delay aside."
-            .to_owned(),
+        caption: format!(
+            "Margins of one output opened at a time, the others closed{what}; –: none."
+        ),
         headings: headings.map(str::to_owned).to_vec(),
         rows: rows.collect(),
     }
+}
+
+/// A number, or a dash where there is none.
+fn dash(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
 }

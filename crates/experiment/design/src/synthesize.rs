@@ -9,11 +9,12 @@ use lti::matrices::dense::blocks;
 use lti::matrices::{
     MatrixError, StateSpace, bilinear, discrete_riccati, inverse_bilinear, sample_delay, series,
 };
-use std::path::PathBuf;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
 use synthesis::{
-    ChannelMargins, DiscMargin, HInfinityOptions, Loop, LqgWeights, SensitivityWeights,
-    SynthesisError, h_infinity, h2, lqg, lqg_with_integral_action, mixed_sensitivity,
-    reduced_to_order, smith_predictor, step_response,
+    ChannelMargins, DiscMargin, HInfinityOptions, Loop, LqgWeights, PredictedMargins,
+    SensitivityWeights, SynthesisError, h_infinity, h2, lqg, lqg_with_integral_action,
+    mixed_sensitivity, predicted_margins, reduced_to_order, smith_predictor, step_response,
 };
 
 /// Points of the frequency responses that are told (–), logarithmic.
@@ -51,17 +52,22 @@ pub struct Synthesized {
     pub orders: [usize; 2],
     /// Samples of delay that the predictor bridges (–).
     pub delay_samples: usize,
+    /// What these leave of the model's delay, which is no whole number of samples (s).
+    pub delay_left: f64,
     /// Margins of each output, one opened at a time, of the loop without the delay.
     pub margins: Vec<ChannelMargins>,
-    /// Of all outputs at once.
+    /// Of all outputs at once, the delay aside.
     pub disc: DiscMargin,
     /// Peaks of sensitivity and complementary sensitivity of the loop without the delay (–).
     pub peaks: [f64; 2],
+    /// The same of what runs, the delay and its predictor in the loop; none of a model without delay.
+    pub with_delay: Option<PredictedMargins>,
     /// Frequency up to which disturbances are held down (rad/s); none where they never are.
     pub bandwidth: Option<f64>,
     /// Sensitivities over frequency.
     pub responses: LoopResponses,
-    /// Answer of every output (second) to a step of each reference (first) with the delay, over samples.
+    /// Answer to a step of each reference (first), with the delay: at each sample (second) all outputs
+    /// (third).
     pub steps: Vec<Vec<Vec<f64>>>,
 }
 
@@ -101,8 +107,23 @@ pub fn synthesize(question: &SynthesizeQuestion) -> Result<Synthesized, DesignEr
     let file = WeightsFile::read(&question.weights)?;
     let weights = file.on(&model, &question.weights)?;
     let diagonals = file.quadratic_on(&model, &question.weights)?;
+    file.check_whole(&question.weights)?;
+    check_modes(&system(&model), &question.model)?;
     found(&model, &file, &weights, &diagonals)
         .map_err(|source| DesignError::Synthesis { path: question.model.clone(), source })
+}
+
+/// Refuses a model, read from `path`, with a mode that is not stable and that no controller can hold.
+fn check_modes(plant: &StateSpace, path: &Path) -> Result<(), DesignError> {
+    let modes = || Ok([plant.unstabilisable_mode()?, plant.undetectable_mode()?]);
+    let modes = modes().map_err(|source| DesignError::Matrix { path: path.to_owned(), source })?;
+    for (mode, moved) in modes.into_iter().zip([false, true]) {
+        if let Some(mode) = mode {
+            let (path, sampled) = (path.to_owned(), plant.interval.is_some());
+            return Err(DesignError::HiddenMode { path, mode, moved, sampled });
+        }
+    }
+    Ok(())
 }
 
 /// A controller without its predictor, and how it was found.
@@ -143,9 +164,11 @@ fn found(
         before_reduction: inner.before_reduction,
         orders: [inner.controller.order(), controller.order()],
         delay_samples: delay,
+        delay_left: model.interval_s.map_or(0.0, |t| model.output_delay_s - t * delay as f64),
         margins: closed.output_margins()?,
         disc: closed.output_disc_margin()?,
         peaks: [s.h_infinity_norm()?.gain, t.h_infinity_norm()?.gain],
+        with_delay: (delay > 0).then(|| predicted_margins(&closed, delay)).transpose()?,
         bandwidth,
         responses: responses(&closed, weights, model, bandwidth)?,
         steps: steps(&t, delay, bandwidth)?,
@@ -189,7 +212,9 @@ fn weighted(
             before_reduction: None,
         }
     };
-    if let Some(order) = file.order.filter(|order| *order < found.controller.order()) {
+    if let Some(order) =
+        file.order.map(NonZeroUsize::get).filter(|order| *order < found.controller.order())
+    {
         let reduced = reduced_to_order(&problem, &found.controller, order)?;
         found.before_reduction = Some(reduced.norm_before);
         found.achieved = Some(reduced.norm_after);

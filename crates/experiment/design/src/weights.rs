@@ -20,6 +20,7 @@ pub(crate) use quadratic::Diagonals;
 use quadratic::Quadratic;
 use serde::Deserialize;
 use std::fmt;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 /// What the file holds, in words.
@@ -55,7 +56,7 @@ pub(crate) struct WeightsFile {
     #[serde(default)]
     quadratic: Quadratic,
     /// Order that the controller is reduced to, before the predictor is added.
-    pub(crate) order: Option<usize>,
+    pub(crate) order: Option<NonZeroUsize>,
 }
 
 impl fmt::Display for Method {
@@ -115,6 +116,22 @@ impl WeightsFile {
             of("complementary", &self.complementary, &model.outputs)?,
             of("control", &self.control, &model.inputs)?,
         ])
+    }
+
+    /// Refuses weights over frequency, in the file at `path`, that leave nothing to find.
+    ///
+    /// # Errors
+    /// [`DesignError::Weight`] naming the table that is missing.
+    pub(crate) fn check_whole(&self, path: &Path) -> Result<(), DesignError> {
+        let is_over_frequency = matches!(self.method, Method::HInfinity | Method::H2);
+        let wanted = self.performance.is_some() || self.complementary.is_some();
+        let costs = self.control.is_some() || self.complementary.is_some();
+        let (table, problem) = match (is_over_frequency, wanted, costs) {
+            (true, false, _) => ("[performance]", WeightProblem::NothingWanted),
+            (true, true, false) => ("[control]", WeightProblem::FreeControl),
+            _ => return Ok(()),
+        };
+        Err(Refused { place: table.to_owned(), problem }.at(path))
     }
 
     /// The weights of a linear quadratic problem on the channels of `model`; this file stands at `path`.

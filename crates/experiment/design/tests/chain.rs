@@ -4,7 +4,7 @@ use design::{
     DesignError, IdentifyQuestion, Source, SynthesizeQuestion, Synthesized, Trend, identify,
     report_identified, report_synthesized, synthesize,
 };
-use formats::linear_model::{LinearModel, Role};
+use formats::linear_model::{LinearModel, Port, Role};
 use lti::Recursion;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -128,6 +128,13 @@ fn the_controller_of_an_identified_model_holds_the_plant_that_was_recorded() {
     let page = report_synthesized(&designed, "model.json", folder.path()).expect("a page");
     let page = fs::read_to_string(page).expect("a page");
     assert!(page.contains("Holds down disturbances") && page.contains("Step responses"));
+    assert!(page.contains("the others closed, with the delay and its predictor"));
+    let delayed = designed.with_delay.as_ref().expect("a delay");
+    // Six samples of delay leave less than none.
+    assert!(delayed.sensitivity.gain > designed.peaks[0], "{delayed:?}");
+    let [_, longer] = delayed.mismatch;
+    assert!(longer.is_some_and(|time| time > INTERVAL), "{delayed:?}");
+    assert_eq!(designed.delay_left, 0.0);
     let path = folder.path().join("controller.json");
     designed.controller.write(&path).expect("written");
     let LinearModel { a, b, c, d, k, .. } =
@@ -253,6 +260,54 @@ fn what_cannot_be_used_is_told_with_its_file() {
         said.contains("weights.toml: [performance] has a pole on the imaginary axis"),
         "{said}"
     );
+}
+
+/// A third state that grows is told with the matrix that hides it, before any weight is blamed; so are the
+/// keys of weights that leave nothing to find.
+#[test]
+fn what_no_controller_can_do_is_told_with_its_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [model, weights] = ["model.json", "weights.toml"].map(|name| folder.path().join(name));
+    let port = |name: &str| vec![Port { name: name.to_owned(), unit: String::new() }];
+    let write = |b: f64, c: f64, grown: f64| {
+        let model_of = LinearModel::new(
+            Role::Model,
+            "a lag".to_owned(),
+            Some(1.0),
+            [port("tilt"), port("up")],
+            [
+                vec![vec![0.9, 0.0], vec![0.0, grown]],
+                vec![vec![0.1], vec![b]],
+                vec![vec![1.0, c]],
+                vec![vec![0.0]],
+            ],
+        );
+        model_of.write(&model).expect("written");
+    };
+    let asked = SynthesizeQuestion { model: model.clone(), weights: weights.clone() };
+    let said = |text: &str| {
+        fs::write(&weights, text).expect("written");
+        let error = synthesize(&asked).expect_err(text);
+        let fix = miette::Diagnostic::help(&error).map(|help| help.to_string());
+        error.to_string() + "; " + &fix.unwrap_or_default()
+    };
+    let performance = "[performance]\nbandwidth = 0.05\npeak = 2.0\nattenuation = 0.001\n";
+    write(0.0, 1.0, 1.05);
+    let both = format!("{performance}\n[control]\nD = [[0.1]]\n");
+    let text = said(&both);
+    assert!(text.contains("model.json: `A` has a mode at z = 1.0500"), "{text}");
+    assert!(text.contains("no input moves it (`B`); identify a model of lower order"), "{text}");
+    write(1.0, 0.0, 1.05);
+    let text = said(&both);
+    assert!(text.contains("no output shows it (`C`)"), "{text}");
+    write(1.0, 1.0, 0.5);
+    let text = said(performance);
+    assert!(text.contains("weights.toml: [control] is missing: controls cost nothing"), "{text}");
+    assert!(text.contains("add [control] with `corner`"), "{text}");
+    let text = said("method = \"h2\"\n");
+    assert!(text.contains("[performance] is missing: nothing is asked"), "{text}");
+    let text = said(&format!("order = 0\n{performance}"));
+    assert!(text.contains("weights.toml") && text.contains("line 1") && text.contains("order"));
 }
 
 /// What a controller comes to, of the model of the record and `weights`.

@@ -189,6 +189,34 @@ fn a_delayed_plant_is_held_by_a_predictor_around_a_robust_controller() {
     assert!(one(0.99 * gain, 0).is_ok() && one(1.01 * gain, 0).is_err());
     let samples = (later / interval).floor() as usize;
     assert!(one(1.0, samples).is_ok() && one(1.0, samples + 1).is_err(), "{later}");
+    // From the loop without its delay, without states for it.
+    let undelayed = Loop::new(plant.clone(), found.controller).unwrap();
+    let predicted = predicted_margins(&undelayed, delay).unwrap();
+    let exact = around.output_margins().unwrap();
+    for (found, exact) in predicted.channels.iter().zip(&exact) {
+        let pairs = [
+            (found.gain_increase, exact.gain_increase),
+            (found.gain_decrease, exact.gain_decrease),
+            (found.phase, exact.phase),
+            (found.delay, exact.delay),
+            (found.crossover, exact.crossover),
+        ];
+        for (found, exact) in pairs {
+            let distance = found.unwrap_or(0.0) - exact.unwrap_or(0.0);
+            assert!(distance.abs() <= 1e-6 * exact.unwrap_or(0.0).abs(), "{found:?} {exact:?}");
+        }
+    }
+    assert!((predicted.disc.size / disc.size - 1.0).abs() < 1e-6, "{predicted:?} {disc:?}");
+    let peak = around.sensitivity().unwrap().h_infinity_norm().unwrap();
+    assert!((predicted.sensitivity.gain / peak.gain - 1.0).abs() < 1e-6, "{predicted:?} {peak:?}");
+    // Plants whose delay is not the one predicted, on either side of what they may be.
+    let late_by = |samples: usize| {
+        let plant = series(&plant, &sample_delay(2, samples, interval).unwrap()).unwrap();
+        Loop::new(plant, controller.clone()).unwrap().stable_or_error()
+    };
+    let [shorter, longer] = predicted.mismatch.map(|time| (time.unwrap() / interval) as usize);
+    assert!(late_by(delay - shorter).is_ok() && late_by(delay - shorter - 1).is_err());
+    assert!(late_by(delay + longer).is_ok() && late_by(delay + longer + 1).is_err());
 }
 
 /// A transform and its inverse leave a whole generalised plant as it was.

@@ -45,7 +45,8 @@ pub(crate) fn jobs(text: &str) -> Result<usize, String> {
     count(text, 1, MOST_JOBS, "runs at a time")
 }
 
-fn count(text: &str, least: usize, most: usize, what: &str) -> Result<usize, String> {
+/// A whole number of `what` between `least` and `most`.
+pub(crate) fn count(text: &str, least: usize, most: usize, what: &str) -> Result<usize, String> {
     let count = text.trim().parse().ok().filter(|count| (least..=most).contains(count));
     count.ok_or_else(|| format!("\"{text}\" is no number of {what}: give {least} to {most}"))
 }

@@ -1,6 +1,6 @@
 //! `wakemix identify`: a linear model of what answers an excitation.
 
-use super::arguments::{finite, positive};
+use super::arguments::{count, finite, positive};
 use super::output::{print_json, print_text, tell};
 use clap::Args;
 use design::{Identified, IdentifyQuestion, Offset, Source, Trend, identify, report_identified};
@@ -27,16 +27,16 @@ pub(crate) struct IdentifyArguments {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     to: Option<f64>,
     /// Order of the model; where the singular values fall most when left out
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = order)]
     order: Option<usize>,
     /// Window of the past (samples)
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = window)]
     past: usize,
     /// Window of the future (samples); that of the past when left out
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = window)]
     future: Option<usize>,
     /// Keep every N-th sample, after a filter
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = decimation)]
     decimate: usize,
     /// Take the line of least squares off each channel, not its mean alone
     #[arg(long)]
@@ -62,6 +62,21 @@ pub(crate) struct IdentifyArguments {
     /// Print JSON on stdout instead of text
     #[arg(long)]
     json: bool,
+}
+
+/// Largest order, window (samples) and decimation that are taken for meant (–).
+const MOST: [usize; 3] = [200, 10_000, 100_000];
+
+fn order(text: &str) -> Result<usize, String> {
+    count(text, 1, MOST[0], "states (--order)")
+}
+
+fn window(text: &str) -> Result<usize, String> {
+    count(text, 1, MOST[1], "samples of a window (--past, --future)")
+}
+
+fn decimation(text: &str) -> Result<usize, String> {
+    count(text, 1, MOST[2], "samples of which one is kept (--decimate)")
 }
 
 /// A share above zero and below one.
@@ -97,13 +112,13 @@ pub(crate) fn run(arguments: &IdentifyArguments) -> Result<()> {
         bandwidth: arguments.bandwidth,
     };
     let found = identify(&question)?;
-    if let Some(path) = &arguments.output {
-        found.model.write(path)?;
-        tell(&format!("model: {}", path.display()));
-    }
     if let Some(folder) = &arguments.report {
         let page = report_identified(&found, &arguments.file.display().to_string(), folder)?;
         tell(&format!("report: {}", page.display()));
+    }
+    if let Some(path) = &arguments.output {
+        found.model.write(path)?;
+        tell(&format!("model: {}", path.display()));
     }
     if arguments.json {
         print_json(&json(&found))

@@ -11,6 +11,12 @@ pub enum WeightProblem {
     /// No key of any form.
     #[error("holds no weight")]
     NoForm,
+    /// No weight of what the outputs are to do.
+    #[error("is missing: nothing is asked of the outputs")]
+    NothingWanted,
+    /// No weight of the control, nor of the complementary sensitivity.
+    #[error("is missing: controls cost nothing, so that they grow without bound")]
+    FreeControl,
     /// Keys of two forms.
     #[error("holds `{}` and `{}`, which are of two forms of a weight", keys[0], keys[1])]
     TwoForms {
@@ -153,6 +159,12 @@ impl WeightProblem {
     /// What would mend it.
     pub fn fix(&self) -> &'static str {
         match self {
+            Self::NothingWanted => {
+                "add [performance] with `bandwidth`, `peak` and `attenuation`, or another weight"
+            }
+            Self::FreeControl => {
+                "add [control] with `corner`, `ratio` and `scale`, or another weight that does not fall off at high frequency"
+            }
             Self::NoForm | Self::TwoForms { .. } | Self::Lacks { .. } => {
                 "give `bandwidth`, `peak` and `attenuation`, or `corner`, `ratio` and `scale`, or `numerator` and `denominator`, or `A`, `B`, `C` and `D` (a gain: `D` alone)"
             }

@@ -102,6 +102,14 @@ pub fn eigenvalues(matrix: &Mat<f64>) -> Result<Vec<Complex64>, MatrixError> {
     matrix.eigenvalues().map_err(|_| MatrixError::NotConverged("the search for eigenvalues"))
 }
 
+/// Eigenvalues of a square complex matrix, in no particular order.
+pub fn complex_eigenvalues(matrix: &Mat<c64>) -> Result<Vec<Complex64>, MatrixError> {
+    if !is_finite_complex(matrix) {
+        return Err(MatrixError::NotFinite);
+    }
+    matrix.eigenvalues().map_err(|_| MatrixError::NotConverged("the search for eigenvalues"))
+}
+
 /// Eigenvalues of a symmetric matrix, smallest first, and its eigenvectors as columns.
 pub fn symmetric_eigen(matrix: &Mat<f64>) -> Result<(Vec<f64>, Mat<f64>), MatrixError> {
     if matrix.nrows() == 0 {
