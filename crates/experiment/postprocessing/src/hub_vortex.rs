@@ -124,6 +124,8 @@ pub struct HubVortexAnswer {
     pub times: Vec<f64>,
     /// What each filter found.
     pub tracks: Vec<HubVortexTrack>,
+    /// Filters that had not settled before the scans ended, which have no track.
+    pub unsettled: Vec<VortexFilter>,
 }
 
 /// Follows the hub vortex through the scans that `question` names, as a controller would.
@@ -151,13 +153,18 @@ pub(crate) fn follow(
         filters => filters,
     };
     let from = question.from.unwrap_or(sampled.spin_up);
-    let mut tracks = Vec::with_capacity(filters.len());
+    let (mut tracks, mut unsettled) = (Vec::with_capacity(filters.len()), Vec::new());
     for filter in filters {
         let settings = settings(*filter, frame, sampled, question);
         let vortices = followed(settings, sampled)?;
         let numbers = numbers(&sampled.times(), &vortices, from, &frame);
-        let numbers = numbers.ok_or_else(|| sampled.too_short(from))?;
-        tracks.push(HubVortexTrack { filter: *filter, vortices, numbers });
+        match numbers {
+            Some(numbers) => tracks.push(HubVortexTrack { filter: *filter, vortices, numbers }),
+            None => unsettled.push(*filter),
+        }
+    }
+    if tracks.is_empty() {
+        return Err(sampled.too_short(from));
     }
     let stored = &sampled.stored;
     Ok(HubVortexAnswer {
@@ -173,6 +180,7 @@ pub(crate) fn follow(
         missing: sampled.missing(),
         times: sampled.times(),
         tracks,
+        unsettled,
     })
 }
 

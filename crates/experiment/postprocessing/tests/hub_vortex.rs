@@ -48,8 +48,9 @@ fn grid() -> Vec<[f64; 2]> {
 }
 
 /// Draws the wake of a rotor with a jet that turns with `frame` in it for `duration` (s), in the place of the
-/// scans of the run in `folder`; gives the share of points that were lost.
-fn draw(folder: &RunFolder, frame: HelixFrame, duration: f64) -> f64 {
+/// scans of the run in `folder`; gives the share of points that were lost. With a `depth` of 0 it is even
+/// wind, with 1 the wake.
+fn draw(folder: &RunFolder, frame: HelixFrame, duration: f64, depth: f64) -> f64 {
     let places = grid();
     let direction =
         |place: &[f64; 2]| Vector3::new(2.0 * RADIUS, place[0], place[1]).normalize().to_array();
@@ -80,8 +81,9 @@ fn draw(folder: &RunFolder, frame: HelixFrame, duration: f64) -> f64 {
         let blocks = ScanBlocks::of(&mut reading).expect("a scan");
         for (point, [y, z]) in places.iter().enumerate() {
             let (x, r) = (2.0 * RADIUS, y.hypot(*z));
-            let wind = 10.0 - 4.5 * (-0.5 * (r / (0.8 * RADIUS)).powi(2)).exp()
-                + 2.5 * (-0.5 * ((y - jet[0]).hypot(z - jet[1]) / 12.0).powi(2)).exp();
+            let wake = 2.5 * (-0.5 * ((y - jet[0]).hypot(z - jet[1]) / 12.0).powi(2)).exp()
+                - 4.5 * (-0.5 * (r / (0.8 * RADIUS)).powi(2)).exp();
+            let wind = 10.0 + depth * wake;
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             let is_lost = random >> 33 < (1 << 31) / 10;
             blocks.speeds[point] = if is_lost { f64::NAN } else { wind * x / x.hypot(r) };
@@ -117,7 +119,7 @@ fn a_jet_of_known_place_is_found_again_drawn_and_told() {
     let run = RunFolder::new(&output, "helix");
     let frame = read_scans(&run.scans_path("T1", "lidar")).expect("scans").helix.expect("a helix");
     assert_eq!(frame.sense, Sense::CounterClockwise);
-    let lost = draw(&run, frame, 300.0);
+    let lost = draw(&run, frame, 300.0, 1.0);
     assert!(lost > 0.05);
 
     let question = HubVortexQuestion { run: run.path().to_owned(), ..Default::default() };
@@ -197,6 +199,37 @@ fn refused_without_a_frame(output: &Path) {
     let turbine = Some("T7".to_owned());
     let error = hub_vortex(&HubVortexQuestion { turbine, ..question }).expect_err("no T7");
     assert!(error.help().expect("a fix").to_string().contains("it has scans-T1.lidar.nc"));
+}
+
+/// Where nothing stands out no jet is found, and the centroid still is.
+#[test]
+fn filters_that_find_nothing_are_told_beside_those_that_do() {
+    let folder = written(&case(WITH_LIDAR, 62.0));
+    let run = RunFolder::new(&done(&options(folder.path())), "helix");
+    let frame = read_scans(&run.scans_path("T1", "lidar")).expect("scans").helix.expect("a helix");
+    draw(&run, frame, 300.0, 0.0);
+    let question = HubVortexQuestion { run: run.path().to_owned(), ..Default::default() };
+    let answer = hub_vortex(&question).expect("an answer");
+    let settled: Vec<VortexFilter> = answer.tracks.iter().map(|track| track.filter).collect();
+    assert!(settled.contains(&VortexFilter::Centroid), "{settled:?}");
+    assert!(!answer.unsettled.is_empty() && settled.len() + answer.unsettled.len() == 3);
+    let analysis = ANALYSES.iter().find(|analysis| analysis.name == "hub-vortex").expect("it");
+    let mut request = Request::of(run.path());
+    let text = (analysis.run)(&request).expect("an answer").text;
+    let told = format!("\n{:<10} has not settled", answer.unsettled[0].name());
+    assert!(text.contains(&told) && text.contains("\ncentroid "), "{text}");
+    // Alone it is no answer.
+    let filters = vec![answer.unsettled[0]];
+    let error = hub_vortex(&HubVortexQuestion { filters, ..question }).expect_err("nothing");
+    assert!(error.to_string().contains("too short"), "{error}");
+    // Beside another run what settles in both is left.
+    request.folders.push(run.path().to_owned());
+    let both = (analysis.run)(&request).expect("an answer");
+    let names = |found: &serde_json::Value| {
+        let filters = found["filters"].as_array().expect("filters").iter();
+        filters.map(|found| found["filter"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&both.json), names(&both.json["beside"][0]));
 }
 
 #[test]

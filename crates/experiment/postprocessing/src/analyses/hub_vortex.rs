@@ -122,7 +122,8 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
             from: request.number("from"),
         })
     };
-    let answers = request.folders.iter().map(ask).collect::<Result<Vec<_>, _>>()?;
+    let mut answers = request.folders.iter().map(ask).collect::<Result<Vec<_>, _>>()?;
+    keep_common(&mut answers, &request.folders)?;
     let mut remarks = Vec::new();
     if let Some(path) = request.text("csv") {
         write_csv(&answers[0], Path::new(path))?;
@@ -152,6 +153,28 @@ fn run(request: &Request) -> Result<Answer, PostprocessingError> {
         first["beside"] = json!(others);
     }
     Ok(Answer { text, json: first, remarks })
+}
+
+/// Keeps the filters that settled in all of the runs in `folders`, which are set beside each other.
+fn keep_common(
+    answers: &mut [HubVortexAnswer],
+    folders: &[PathBuf],
+) -> Result<(), PostprocessingError> {
+    let settled = |answer: &HubVortexAnswer| -> Vec<VortexFilter> {
+        answer.tracks.iter().map(|track| track.filter).collect()
+    };
+    let each: Vec<_> = answers.iter().map(settled).collect();
+    for (answer, folder) in answers.iter_mut().zip(folders) {
+        answer.tracks.retain(|track| each.iter().all(|all| all.contains(&track.filter)));
+        if answer.tracks.is_empty() {
+            return Err(PostprocessingError::Scans {
+                path: folder.clone(),
+                problem: "holds scans in which no filter settles that settles in those of the other runs too".to_owned(),
+                fix: "count from an earlier time with --from, or leave the shortest run out".to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// What stands below the tables.
@@ -186,6 +209,13 @@ fn text(answer: &HubVortexAnswer, name: &str) -> String {
             pair(numbers.radius[0], numbers.radius[1]),
             numbers.confidence,
             100.0 * numbers.blind
+        );
+    }
+    for filter in &answer.unsettled {
+        text += &format!(
+            "{:<10} has not settled between {} s and the end of the scans: --from an earlier time, or a longer run\n",
+            filter.name(),
+            answer.from
         );
     }
     text
@@ -235,6 +265,7 @@ fn json(answer: &HubVortexAnswer) -> serde_json::Value {
         "missing": answer.missing,
         "times_s": answer.times,
         "filters": tracks.collect::<Vec<_>>(),
+        "unsettled": answer.unsettled.iter().map(|filter| filter.name()).collect::<Vec<_>>(),
     })
 }
 
