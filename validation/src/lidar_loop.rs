@@ -155,6 +155,7 @@ fn of_loop(designed: &Synthesized) -> Result<Row, String> {
         designed.bandwidth,
         designed.margins
     );
+    tell!("with the delay and its predictor: {:?}", designed.with_delay);
     Ok(Row {
         what: "norm of the weighted loop without its delay, by its own Hamiltonian".to_owned(),
         measured: designed.achieved.ok_or("the controller has no norm")?,
@@ -168,9 +169,9 @@ fn of_loop(designed: &Synthesized) -> Result<Row, String> {
 /// Share of a step by [`SHIFT`] that the design leaves at last (–).
 fn left(designed: &Synthesized) -> Result<f64, String> {
     let last = |reference: usize, output: usize| {
-        let answers = designed.steps.get(reference).and_then(|answers| answers.get(output));
-        let last = answers.and_then(|answer| answer.last()).copied();
-        last.ok_or("the design has no step response")
+        let samples = designed.steps.get(reference).and_then(|samples| samples.last());
+        let answer = samples.and_then(|outputs| outputs.get(output)).copied();
+        answer.ok_or("the design has no step response")
     };
     let mut squares = 0.0;
     for (output, asked) in SHIFT.iter().enumerate() {

@@ -66,7 +66,7 @@ fn law() -> Result<[Row; 2], String> {
     let share = |axis: usize| aside.get(axis).copied().unwrap_or(f64::NAN);
     Ok([("tilt", share(0)), ("yaw", share(1))].map(|(axis, share)| Row {
         what: format!(
-            "nrel-5mw in {LATTICE}, 10 m/s even, helix 3° ccw at St 0.3 with 1° of noise, 870 s: variance of the wake's {axis} kept aside that a model of order 8 accounts for"
+            "nrel-5mw in {LATTICE}, 10 m/s, shear 0.1, helix 3° ccw at St 0.3 with 1° of noise, 870 s: variance of the wake's {axis} kept aside that a model of order 8 accounts for"
         ),
         measured: share,
         expected: 80.0,

@@ -70,7 +70,7 @@ pub enum ControlError {
     },
     /// Noise that the pitch actuator cannot follow.
     #[error(
-        "noise_amplitude_deg = {amplitude_deg} up to noise_to_hz = {frequency} Hz on a helix of {helix_deg}° ask for up to {asked_deg:.1}°/s of pitch at rated rotor speed, the actuator has {most_deg:.1}°/s: {fix}"
+        "noise_amplitude_deg = {amplitude_deg} up to noise_to_hz = {frequency} Hz on a helix of {helix_deg}° ask for {asked_deg:.1}°/s of pitch at rated rotor speed, the actuator has {most_deg:.1}°/s: {fix}"
     )]
     NoiseTooFast {
         /// Amplitude of the noise (deg).

@@ -8,7 +8,7 @@ use lti::matrices::{MatrixError, StateSpace, feedback, inverse_bilinear, series}
 /// Plant and controller with negative feedback: y = G u, u = K (r − y).
 #[derive(Clone, Debug)]
 pub struct Loop {
-    plant: StateSpace,
+    pub(crate) plant: StateSpace,
     controller: StateSpace,
 }
 

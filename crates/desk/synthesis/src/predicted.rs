@@ -15,6 +15,16 @@ const N_SPREAD: usize = 1200;
 /// Frequencies in even steps, at least (–), and in a turn of the delay's phase.
 const N_EVEN: usize = 600;
 const N_A_TURN: usize = 48;
+/// Frequencies beside a pole, as many (–) at angles up to this (rad) whose tangent is the distance over the
+/// pole's damping.
+const N_AT_POLE: usize = 61;
+const WIDEST: f64 = 1.5;
+/// Parts (–) into which a step is cut where a crossing may lie between two that cancel.
+const N_PARTS: usize = 8;
+/// Crossings in a part of a step that are looked for at most (–).
+const MOST_IN_A_STEP: usize = 8;
+/// Distance (–) from 1 of a diagonal entry of T below which its open loop is infinite: it integrates.
+const INTEGRATES: f64 = 1e-9;
 /// Halvings of a bracket (–).
 const N_HALVINGS: usize = 50;
 /// Distance (–) from the real part 1/2 up to which an eigenvalue is one that crosses there.
@@ -44,10 +54,11 @@ pub fn predicted_margins(
     delay: usize,
 ) -> Result<PredictedMargins, SynthesisError> {
     undelayed.stable_or_error()?;
+    undelayed.plant.stable_or_error().map_err(SynthesisError::UnstableModel)?;
     let complementary = undelayed.complementary_sensitivity()?;
     let interval = complementary.interval.ok_or(MatrixError::Time { needed: "discrete" })?;
-    let delayed = Delayed { complementary, delay: delay as f64 * interval };
-    let sweep = delayed.sweep(interval, delay)?;
+    let delayed = Delayed { complementary, delay: delay as f64 * interval, interval };
+    let sweep = delayed.sweep(delay)?;
     let n = delayed.complementary.outputs();
     let channels = (0..n).map(|channel| delayed.channel(&sweep, channel));
     let half = delayed.peak(&sweep, 0.5)?;
@@ -67,6 +78,8 @@ struct Delayed {
     complementary: StateSpace,
     /// s.
     delay: f64,
+    /// Time between samples (s).
+    interval: f64,
 }
 
 impl Delayed {
@@ -77,14 +90,22 @@ impl Delayed {
         Ok(Mat::from_fn(response.nrows(), response.ncols(), |i, j| turn * response[(i, j)]))
     }
 
-    /// Its responses from rest to half the sample rate.
-    fn sweep(&self, interval: f64, delay: usize) -> Result<Sweep, MatrixError> {
-        let fastest = PI / interval;
+    /// Its responses from rest to half the sample rate, close beside each pole as far as it reaches.
+    fn sweep(&self, delay: usize) -> Result<Sweep, MatrixError> {
+        let fastest = PI / self.interval;
         let spread = (0..N_SPREAD)
             .map(|i| fastest * 10_f64.powf(DECADES * (i as f64 / N_SPREAD as f64 - 1.0)));
         let n_even = N_EVEN.max(N_A_TURN * delay / 2);
         let even = (0..=n_even).map(|i| fastest * i as f64 / n_even as f64);
         let mut frequencies: Vec<f64> = spread.chain(even).collect();
+        for pole in self.complementary.poles()? {
+            let rate = pole.ln() / self.interval;
+            let about = (0..N_AT_POLE).map(|i| {
+                let turn = WIDEST * (2.0 * i as f64 / (N_AT_POLE - 1) as f64 - 1.0);
+                rate.im.abs() + rate.re * turn.tan()
+            });
+            frequencies.extend(about.filter(|found| *found > 0.0 && *found < fastest));
+        }
         frequencies.sort_by(f64::total_cmp);
         frequencies.dedup();
         frequencies.into_iter().map(|frequency| Ok((frequency, self.at(frequency)?))).collect()
@@ -95,16 +116,21 @@ impl Delayed {
     fn channel(&self, sweep: &Sweep, channel: usize) -> Result<ChannelMargins, MatrixError> {
         let of = |response: &Mat<c64>| response[(channel, channel)];
         let mut margins = ChannelMargins::default();
-        let real = self.crossings(sweep, |response| Ok(usize::from(of(response).im > 0.0)))?;
+        let real = self.crossings(sweep, |response| Ok(vec![of(response).im]))?;
         let ends = [0, sweep.len() - 1].map(|end| sweep[end].0);
         for frequency in real.into_iter().chain(ends) {
             let value = of(&self.at(frequency)?).re;
-            margins.take_real(value / (1.0 - value));
+            if (1.0 - value).abs() > INTEGRATES {
+                margins.take_real(value / (1.0 - value));
+            }
         }
-        let even = self.crossings(sweep, |response| Ok(usize::from(of(response).re > 0.5)))?;
+        let even = self.crossings(sweep, |response| Ok(vec![of(response).re - 0.5]))?;
         for frequency in even {
             let value = of(&self.at(frequency)?);
             margins.take_unit(value / (1.0 - value), frequency);
+        }
+        if of(&sweep[sweep.len() - 1].1).re > 0.5 {
+            margins.delay = Some(margins.delay.map_or(self.interval, |d| d.min(self.interval)));
         }
         Ok(margins)
     }
@@ -153,8 +179,14 @@ impl Delayed {
         let [mut shorter, mut longer] = [self.delay, f64::INFINITY];
         let past = |response: &Mat<c64>| {
             let values = complex_eigenvalues(response)?;
-            Ok(values.iter().filter(|value| value.re > 0.5).count())
+            Ok(values.iter().map(|value| value.re - 0.5).collect::<Vec<f64>>())
         };
+        // At half the sample rate a sample more or less turns the sign: a root comes in along the negative
+        // axis, without a border in between.
+        if past(&sweep[sweep.len() - 1].1)?.iter().any(|distance| *distance > 0.0) {
+            longer = self.interval;
+            shorter = shorter.min(self.interval);
+        }
         for frequency in self.crossings(sweep, past)?.into_iter().filter(|rate| *rate > 0.0) {
             for value in complex_eigenvalues(&self.at(frequency)?)? {
                 if (value.re - 0.5).abs() > AT_CROSSING {
@@ -168,27 +200,45 @@ impl Delayed {
         Ok([(shorter < self.delay).then_some(shorter), longer.is_finite().then_some(longer)])
     }
 
-    /// Frequencies (rad/s) at which what `count` counts changes.
+    /// Frequencies (rad/s) at which one of the `distances` of a response changes its sign.
     fn crossings(
         &self,
         sweep: &Sweep,
-        count: impl Fn(&Mat<c64>) -> Result<usize, MatrixError>,
+        distances: impl Fn(&Mat<c64>) -> Result<Vec<f64>, MatrixError>,
     ) -> Result<Vec<f64>, MatrixError> {
+        let count = |found: &[f64]| found.iter().filter(|distance| **distance > 0.0).count();
+        let count_at = |frequency: f64| Ok(count(&distances(&self.at(frequency)?)?));
         let mut found = Vec::new();
-        let mut before = count(&sweep[0].1)?;
+        let mut before = distances(&sweep[0].1)?;
         for pair in sweep.windows(2) {
-            let [mut low, mut high] = [pair[0].0, pair[1].0];
-            let here = count(&pair[1].1)?;
-            if here != before {
-                for _ in 0..N_HALVINGS {
-                    let middle = 0.5 * (low + high);
-                    if count(&self.at(middle)?)? == before {
-                        low = middle;
-                    } else {
-                        high = middle;
+            let here = distances(&pair[1].1)?;
+            let nearest = here.iter().chain(&before).map(|d| d.abs()).fold(f64::INFINITY, f64::min);
+            let n = if nearest < (&pair[1].1 - &pair[0].1).norm_l2() { N_PARTS } else { 1 };
+            let width = (pair[1].0 - pair[0].0) / n as f64;
+            let mut low_count = count(&before);
+            for part in 0..n {
+                let start = pair[0].0 + part as f64 * width;
+                let end = if part + 1 == n { pair[1].0 } else { start + width };
+                let end_count = if part + 1 == n { count(&here) } else { count_at(end)? };
+                let mut from = start;
+                // Several that go the same way are found one after the other.
+                for _ in 0..MOST_IN_A_STEP {
+                    if low_count == end_count {
+                        break;
                     }
+                    let [mut low, mut high] = [from, end];
+                    for _ in 0..N_HALVINGS {
+                        let middle = 0.5 * (low + high);
+                        if count_at(middle)? == low_count {
+                            low = middle;
+                        } else {
+                            high = middle;
+                        }
+                    }
+                    found.push(high);
+                    from = high;
+                    low_count = if high < end { count_at(high)? } else { end_count };
                 }
-                found.push(high);
             }
             before = here;
         }

@@ -2,6 +2,7 @@
 
 use crate::model::short;
 use crate::{Identified, LoopResponses, Responses, Synthesized};
+use formats::linear_model::Port;
 use report::{
     Along, DensityFigure, DensityRow, Signals, SpectrumLine, TrackFigure, TrackLine, TrackRow,
 };
@@ -69,26 +70,27 @@ fn phases(found: &Identified) -> TrackFigure {
     let highest = last_told(response);
     let n = response.frequencies.iter().take_while(|rate| **rate <= highest).count();
     let [inputs, outputs] = [&found.model.inputs, &found.model.outputs];
-    let mut rows = Vec::new();
-    for (i, output) in outputs.iter().enumerate() {
-        for (j, input) in inputs.iter().enumerate() {
-            let line = |name: &str, colour: usize, of: &[Vec<Vec<lti::Complex64>>]| TrackLine {
-                name: name.to_owned(),
-                colour,
-                times: response.frequencies[..n].iter().map(|rate| rate.log10()).collect(),
-                values: of[..n].iter().map(|at| at[i][j].arg().to_degrees()).collect(),
-                band: Vec::new(),
-            };
-            rows.push(TrackRow {
-                label: format!("{} / {}", short(&output.name), short(&input.name)),
-                is_angle: true,
-                lines: vec![
-                    line("record", 0, &response.measured),
-                    line("model", 1, &response.modelled),
-                ],
-            });
+    let row = |(i, output): (usize, &Port)| {
+        let line = |of: &[Vec<Vec<lti::Complex64>>], j: usize, what: &str, colour| TrackLine {
+            name: format!("{what}, from {}", short(&inputs[j].name)),
+            colour,
+            times: response.frequencies[..n].iter().map(|rate| rate.log10()).collect(),
+            values: of[..n].iter().map(|at| at[i][j].arg()).collect(),
+            band: Vec::new(),
+        };
+        let both = |j| {
+            [
+                line(&response.measured, j, "record", 2 * j),
+                line(&response.modelled, j, "model", 2 * j + 1),
+            ]
+        };
+        TrackRow {
+            label: format!("{} (°)", short(&output.name)),
+            is_angle: true,
+            lines: (0..inputs.len()).flat_map(both).collect(),
         }
-    }
+    };
+    let rows = outputs.iter().enumerate().map(row).collect();
     TrackFigure {
         along: Along { label: "log₁₀ of frequency in rad/s", unit: "" },
         name: "phase-response".to_owned(),

@@ -18,7 +18,7 @@ use basis::keys::LeftOut::{Otherwise, Value};
 use basis::keys::{Holds, Objection, Table, Values, above, from, key};
 use basis::registry::Named;
 use basis::{Channel, HelixFrame, Sense};
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 /// Probing.
 pub struct ProbingKind;
@@ -111,7 +111,15 @@ impl ControllerKind for ProbingKind {
         let band = ["noise_from_hz", "noise_to_hz"].map(|key| TAU * values.number(key));
         let start = values.number("start");
         let [helix, noise] = ["amplitude_deg", "noise_amplitude_deg"].map(|key| values.angle(key));
-        let turning = site.constants.rated_rotor_speed + frame.rate;
+        // A swashplate stands still where blades go round.
+        let going_round = match site.rotor.swashplate {
+            Some(_) => 0.0,
+            None => site.constants.rated_rotor_speed,
+        };
+        let turning = match frame.sense {
+            Sense::CounterClockwise => going_round + frame.rate,
+            Sense::Clockwise => (going_round - frame.rate).abs(),
+        };
         let most = site.rotor.pitch_actuator.maximum_rate;
         Asked { helix, noise, turning, upper: band[1] }.follows(most)?;
         let probing = Probing {
@@ -151,18 +159,17 @@ struct Asked {
     /// Amplitude of the helix, and of the noise on each of its axes (rad).
     helix: f64,
     noise: f64,
-    /// Rate of the helix frame as a blade sees it, at most: rated rotor speed and the helix's (rad/s).
+    /// Rate of the helix frame as the actuator sees it: rated rotor speed and the helix's (rad/s).
     turning: f64,
     /// Upper end of the noise's band (rad/s).
     upper: f64,
 }
 
 impl Asked {
-    /// Fastest pitch (rad/s): the helix turns with its frame, and so does noise on both axes, which changes
-    /// in it too.
+    /// Fastest pitch (rad/s) under the helix and a sine on each axis at the band's upper end: with
+    /// r² + (r′/ω)² = 2 a², r the length of both and r′ its rate, Ω r + r′ is at most √2 a √(Ω² + ω²).
     fn rate(&self) -> f64 {
-        let noise = std::f64::consts::SQRT_2 * self.noise;
-        self.helix * self.turning + noise * (self.turning + self.upper)
+        self.helix * self.turning + SQRT_2 * self.noise * self.turning.hypot(self.upper)
     }
 
     /// Whether an actuator of the rate `most` (rad/s) follows; one without noise is a helix, which has no
@@ -175,8 +182,8 @@ impl Asked {
         if self.noise == 0.0 || asked <= most {
             return Ok(());
         }
-        let left = most - (asked - std::f64::consts::SQRT_2 * self.noise * self.upper);
-        let frequency = left / (std::f64::consts::SQRT_2 * self.noise) / TAU;
+        let left = ((most - self.helix * self.turning) / (SQRT_2 * self.noise)).max(0.0);
+        let frequency = (left * left - self.turning * self.turning).max(0.0).sqrt() / TAU;
         // Rounded down, so that what is printed can be taken.
         let frequency = (100.0 * frequency).floor() / 100.0;
         Err(ControlError::NoiseTooFast {
@@ -197,19 +204,18 @@ impl Asked {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::SQRT_2;
 
     #[test]
     fn noise_is_no_faster_than_the_actuator() {
         let [helix, noise, most] = [3.0_f64, 1.0, 8.0].map(f64::to_radians);
         let asked = |hertz: f64| Asked { helix, noise, turning: 1.4, upper: TAU * hertz };
-        // By hand: 3·1.4 + √2·(1.4 + 2π·0.1), °/s.
-        let by_hand = 4.2 + SQRT_2 * (1.4 + 0.2 * std::f64::consts::PI);
-        assert!((asked(0.1).rate().to_degrees() - by_hand).abs() < 1e-12);
+        // By hand: 3·1.4 + √2·√(1.4² + (2π·0.1)²), °/s.
+        assert!((asked(0.1).rate().to_degrees() - 6.370_2).abs() < 1e-4);
         assert!(asked(0.2).follows(most).is_ok());
-        let error = asked(10.0).follows(most).expect_err("95°/s").to_string();
-        assert!(error.contains("ask for up to 95.0°/s") && error.contains("has 8.0°/s"), "{error}");
-        assert!(error.contains("noise_to_hz to 0.20 Hz or less"), "{error}");
+        let error = asked(10.0).follows(most).expect_err("93°/s").to_string();
+        assert!(error.contains("ask for 93.1°/s") && error.contains("has 8.0°/s"), "{error}");
+        assert!(error.contains("noise_to_hz to 0.36 Hz or less"), "{error}");
+        assert!(asked(0.36).follows(most).is_ok() && asked(0.37).follows(most).is_err());
         // A helix that leaves nothing for noise.
         let wide = Asked { helix: 2.0 * helix, ..asked(0.1) };
         let error = wide.follows(most).expect_err("8.4°/s alone").to_string();
@@ -218,24 +224,25 @@ mod tests {
         assert!(Asked { noise: 0.0, ..asked(10.0) }.follows(most).is_ok());
     }
 
-    /// The fastest pitch of one blade under the loudest noise comes to what is asked for.
+    /// No pair of sines on the axes makes a blade pitch faster, and one comes near it.
     #[test]
-    fn no_pitch_is_faster_than_what_is_said() {
+    fn no_sines_pitch_faster_than_what_is_said() {
         let asked = Asked { helix: 0.05, noise: 0.02, turning: 1.4, upper: 0.6 };
-        // Tilt and yaw of the helix and of noise that turns as fast as its band lets it, seen by a blade.
-        let pitch = |t: f64| {
-            let (sine, cosine) = (asked.turning * t).sin_cos();
-            let (wave, other) = (asked.upper * t).sin_cos();
-            let [tilt, yaw] = [asked.noise * (wave + other), asked.noise * (other - wave)];
-            asked.helix * cosine + tilt * cosine + yaw * sine
+        let fastest = |lag: f64| {
+            let pitch = |t: f64| {
+                let (sine, cosine) = (asked.turning * t).sin_cos();
+                let [tilt, yaw] = [0.0, lag].map(|lag| asked.noise * (asked.upper * t + lag).cos());
+                asked.helix * cosine + tilt * cosine + yaw * sine
+            };
+            let step = 1e-3;
+            let rates = (0..400_000).map(|i| {
+                let t = f64::from(i) * step;
+                ((pitch(t + step) - pitch(t)) / step).abs()
+            });
+            rates.fold(0.0, f64::max)
         };
-        let step = 1e-3;
-        let rates = (0..400_000).map(|i| {
-            let t = f64::from(i) * step;
-            ((pitch(t + step) - pitch(t)) / step).abs()
-        });
-        let fastest = rates.fold(0.0, f64::max);
-        assert!(fastest <= asked.rate() * (1.0 + 1e-6), "{fastest}");
-        assert!(fastest >= 0.9 * asked.rate(), "{fastest} {}", asked.rate());
+        let found = [0.0, 0.7, 1.5, -0.7, -1.5, 3.0].map(fastest);
+        assert!(found.iter().all(|rate| *rate <= asked.rate() * (1.0 + 1e-6)), "{found:?}");
+        assert!(found.iter().any(|rate| *rate >= 0.95 * asked.rate()), "{found:?}");
     }
 }

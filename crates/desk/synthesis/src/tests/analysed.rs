@@ -219,6 +219,68 @@ fn a_delayed_plant_is_held_by_a_predictor_around_a_robust_controller() {
     assert!(late_by(delay + longer).is_ok() && late_by(delay + longer + 1).is_err());
 }
 
+/// The margins of a loop with `delay` predicted samples, and whether it is stable where the plant is
+/// another number of samples late.
+fn beside_states(
+    plant: &StateSpace,
+    controller: &StateSpace,
+    delay: usize,
+) -> (PredictedMargins, Box<dyn Fn(usize) -> bool>) {
+    let undelayed = Loop::new(plant.clone(), controller.clone()).unwrap();
+    let margins = predicted_margins(&undelayed, delay).unwrap();
+    let predictor = smith_predictor(plant, delay, controller).unwrap();
+    let plant = plant.clone();
+    let late_by = move |samples: usize| {
+        let interval = plant.interval.unwrap();
+        let late = sample_delay(plant.outputs(), samples, interval).unwrap();
+        let loop_of = Loop::new(series(&plant, &late).unwrap(), predictor.clone()).unwrap();
+        loop_of.stable_or_error().is_ok()
+    };
+    (margins, Box::new(late_by))
+}
+
+/// gain/(z − pole), every second.
+fn first_order(pole: f64, gain: f64) -> StateSpace {
+    StateSpace::new(mat![[pole]], mat![[gain]], mat![[1.0]], mat![[0.0]], Some(1.0))
+}
+
+/// A mode that hardly dies away has a peak that is narrower than any even step; integral control is infinite
+/// at rest.
+#[test]
+fn a_narrow_peak_of_a_predicted_loop_is_not_stepped_over() {
+    let (radius, angle, delay) = (0.9995_f64, 0.35_f64, 20);
+    let (sine, cosine) = angle.sin_cos();
+    let mode = StateSpace::new(
+        mat![[radius * cosine, radius * sine], [-radius * sine, radius * cosine]],
+        mat![[-0.02], [0.0]],
+        mat![[1.0, 0.5]],
+        mat![[0.0]],
+        Some(1.0),
+    );
+    let plant = parallel(&first_order(0.9, 0.1), &mode).unwrap();
+    let (margins, late_by) = beside_states(&plant, &first_order(1.0, 0.04), delay);
+    assert!(margins.channels[0].gain_decrease.is_none_or(|gain| gain > 0.01), "{margins:?}");
+    let longer = margins.mismatch[1].unwrap() as usize;
+    let stable: Vec<bool> = (0..=longer + 1).map(|more| late_by(delay + more)).collect();
+    assert!(stable[..=longer].iter().all(|stable| *stable) && !stable[longer + 1], "{margins:?}");
+    assert!(longer < 10, "{longer}: it is the mode's");
+}
+
+/// Where T is above one half at half the sample rate, a sample more is too much, and no less has a border.
+#[test]
+fn a_fast_predicted_loop_stands_less_than_a_sample() {
+    let plant = first_order(0.2, 0.8);
+    let gain = StateSpace::gain(mat![[1.2]], Some(1.0));
+    for controller in [&first_order(0.3, 1.1), &gain] {
+        let (margins, late_by) = beside_states(&plant, controller, 4);
+        assert!(late_by(4));
+        let longer = margins.mismatch[1].unwrap();
+        let first = (5..60).find(|samples| !late_by(*samples)).unwrap();
+        assert!(longer <= (first - 4) as f64 && longer > 0.0, "{longer} {first} {margins:?}");
+        assert!(margins.channels[0].delay.unwrap() <= longer + 1e-9, "{margins:?}");
+    }
+}
+
 /// A transform and its inverse leave a whole generalised plant as it was.
 #[test]
 fn a_closed_loop_is_the_same_in_either_time() {
