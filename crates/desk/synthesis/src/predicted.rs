@@ -208,40 +208,52 @@ impl Delayed {
     ) -> Result<Vec<f64>, MatrixError> {
         let count = |found: &[f64]| found.iter().filter(|distance| **distance > 0.0).count();
         let count_at = |frequency: f64| Ok(count(&distances(&self.at(frequency)?)?));
-        let mut found = Vec::new();
         let mut before = distances(&sweep[0].1)?;
+        let mut marks = vec![(sweep[0].0, count(&before))];
         for pair in sweep.windows(2) {
+            let [start, end] = [pair[0].0, pair[1].0];
             let here = distances(&pair[1].1)?;
             let nearest = here.iter().chain(&before).map(|d| d.abs()).fold(f64::INFINITY, f64::min);
             let n = if nearest < (&pair[1].1 - &pair[0].1).norm_l2() { N_PARTS } else { 1 };
-            let width = (pair[1].0 - pair[0].0) / n as f64;
-            let mut low_count = count(&before);
-            for part in 0..n {
-                let start = pair[0].0 + part as f64 * width;
-                let end = if part + 1 == n { pair[1].0 } else { start + width };
-                let end_count = if part + 1 == n { count(&here) } else { count_at(end)? };
-                let mut from = start;
-                // Several that go the same way are found one after the other.
-                for _ in 0..MOST_IN_A_STEP {
-                    if low_count == end_count {
-                        break;
-                    }
-                    let [mut low, mut high] = [from, end];
-                    for _ in 0..N_HALVINGS {
-                        let middle = 0.5 * (low + high);
-                        if count_at(middle)? == low_count {
-                            low = middle;
-                        } else {
-                            high = middle;
-                        }
-                    }
-                    found.push(high);
-                    from = high;
-                    low_count = if high < end { count_at(high)? } else { end_count };
-                }
+            for part in 1..n {
+                let frequency = start + part as f64 * ((end - start) / n as f64);
+                marks.push((frequency, count_at(frequency)?));
             }
+            marks.push((end, count(&here)));
             before = here;
+        }
+        let mut found = Vec::new();
+        for pair in marks.windows(2) {
+            changes(pair[0], pair[1], count_at, &mut found)?;
         }
         Ok(found)
     }
+}
+
+/// Adds to `found` the frequencies (rad/s) between two at which `count_at` is known where it changes; several
+/// that go the same way one after the other.
+fn changes(
+    (mut from, mut here): (f64, usize),
+    (end, there): (f64, usize),
+    count_at: impl Fn(f64) -> Result<usize, MatrixError>,
+    found: &mut Vec<f64>,
+) -> Result<(), MatrixError> {
+    for _ in 0..MOST_IN_A_STEP {
+        if here == there {
+            break;
+        }
+        let [mut low, mut high] = [from, end];
+        for _ in 0..N_HALVINGS {
+            let middle = 0.5 * (low + high);
+            if count_at(middle)? == here {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        found.push(high);
+        from = high;
+        here = if high < end { count_at(high)? } else { there };
+    }
+    Ok(())
 }

@@ -128,15 +128,15 @@ fn facts_of_controller(found: &Synthesized) -> Vec<[String; 3]> {
     let predictor = format!("{whole} with a predictor of {} samples", found.delay_samples);
     facts.push(fact("Order", inner, if found.delay_samples > 0 { &predictor } else { "" }));
     let bandwidth = found.bandwidth.map_or("–".to_owned(), |rate| format!("{rate:.4} rad/s"));
-    let aside = if found.with_delay.is_some() { "without the delay" } else { "" };
-    facts.push(fact("Bandwidth", bandwidth, aside));
+    let aside = if found.with_delay.is_some() { " without the delay" } else { "" };
+    facts.push(fact("Bandwidth", bandwidth, aside.trim_start()));
     let [s, t] = found.peaks;
-    facts.push(fact("Peaks", format!("{s:.3}, {t:.3}"), format!("of S and T {aside}").trim_end()));
+    facts.push(fact("Peaks", format!("{s:.3}, {t:.3}"), format!("of S and T{aside}")));
     facts.push(disc_margin(&found.disc, aside));
     if let Some(delayed) = &found.with_delay {
-        let with = "with the delay and its predictor";
+        let with = " with the delay and its predictor";
         let peak = format!("{:.3}", delayed.sensitivity.gain);
-        facts.push(fact("Peak", peak, format!("of S {with}")));
+        facts.push(fact("Peak", peak, format!("of S{with}")));
         facts.push(disc_margin(&delayed.disc, with));
         let [shorter, longer] = delayed.mismatch.map(|time| dash(time, 2));
         let remark =
@@ -148,13 +148,13 @@ fn facts_of_controller(found: &Synthesized) -> Vec<[String; 3]> {
 
 fn disc_margin(disc: &DiscMargin, how: &str) -> [String; 3] {
     let remark = format!(
-        "of all outputs at once {how}: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s",
+        "of all outputs at once{how}: gains {:.2} to {:.2}, phase {:.1}°, at {:.4} rad/s",
         disc.gain[0],
         disc.gain[1],
         disc.phase.to_degrees(),
         disc.frequency
     );
-    fact("Disc margin", format!("{:.3}", disc.size), remark.replace(" :", ":"))
+    fact("Disc margin", format!("{:.3}", disc.size), remark)
 }
 
 /// A complex number as text.

@@ -64,19 +64,23 @@ pub(crate) struct IdentifyArguments {
     json: bool,
 }
 
-/// Largest order, window (samples) and decimation that are taken for meant (–).
-const MOST: [usize; 3] = [200, 10_000, 100_000];
+/// Most states that a model is taken to be meant with (–).
+const MOST_STATES: usize = 200;
+/// Longest window (samples), likewise.
+const LONGEST_WINDOW: usize = 10_000;
+/// Most samples of which one is kept (–), likewise.
+const MOST_DECIMATED: usize = 100_000;
 
 fn order(text: &str) -> Result<usize, String> {
-    count(text, 1, MOST[0], "states (--order)")
+    count(text, 1, MOST_STATES, "states (--order)")
 }
 
 fn window(text: &str) -> Result<usize, String> {
-    count(text, 1, MOST[1], "samples of a window (--past, --future)")
+    count(text, 1, LONGEST_WINDOW, "samples of a window (--past, --future)")
 }
 
 fn decimation(text: &str) -> Result<usize, String> {
-    count(text, 1, MOST[2], "samples of which one is kept (--decimate)")
+    count(text, 1, MOST_DECIMATED, "samples of which one is kept (--decimate)")
 }
 
 /// A share above zero and below one.
