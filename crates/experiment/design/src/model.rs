@@ -32,6 +32,11 @@ pub(crate) fn short(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(_, channel)| channel)
 }
 
+/// `value` to five digits, as a sentence tells it.
+pub(crate) fn five_digits(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
+}
+
 /// A matrix row by row.
 pub(crate) fn rows(matrix: &Mat<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()

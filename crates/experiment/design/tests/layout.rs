@@ -344,6 +344,6 @@ fn what_is_wrong_is_named_with_the_fix() {
     let text = LAYOUT.replacen("to = 4.0\nstep = 1.0", "to = 9.0\nstep = 1.0", 1);
     fs::write(&path, text).expect("written");
     let warnings = predict_layout(&path).expect("predictions").warnings;
-    let words = "of control.T1.amplitude_deg that it was trained on, the furthest is 9 (strategy greedy, turbine T1)";
+    let words = "of control.T1.amplitude_deg that was trained on, the furthest is 9 (strategy greedy, turbine T1)";
     assert!(warnings.iter().any(|told| told.contains(words)), "{warnings:?}");
 }

@@ -2,6 +2,7 @@
 
 use super::file::{LayoutFile, WHAT};
 use crate::DesignError;
+use crate::model::five_digits;
 use crate::regression::regression;
 use flow::inflow::{CutPlanes, Disc, InflowError, PlaneMeans, SECTOR_NAMES};
 use formats::surrogate_model::SurrogateModel;
@@ -232,12 +233,13 @@ impl<'a> Asked<'a> {
         surrogate.model.inputs.iter().zip(&surrogate.sources).map(value).collect()
     }
 
-    /// A sentence for each input of a surrogate that leaves at `questions` what it was trained on.
+    /// A sentence for each input of surrogates that leaves at `questions` what they were trained on; those of
+    /// one table say the same.
     ///
     /// # Errors
     /// As [`answers`](Self::answers).
     pub(super) fn outside(&self, questions: &[Question]) -> Result<Vec<String>, DesignError> {
-        let mut told = Vec::new();
+        let mut told: Vec<(Vec<&str>, String)> = Vec::new();
         for surrogate in &self.surrogates {
             let points = self.points(surrogate, questions)?;
             for (input, [low, high]) in surrogate.model.ranges.iter().enumerate() {
@@ -249,20 +251,25 @@ impl<'a> Asked<'a> {
                 let furthest = out.iter().max_by(|a, b| beyond(**a).total_cmp(&beyond(**b)));
                 let Some(furthest) = furthest else { continue };
                 let (question, port) = (&questions[*furthest], &surrogate.model.inputs[input]);
-                told.push(format!(
-                    "{}: {} of {} questions lie outside the {low} to {high} {} of {} that it was trained on, the furthest is {} (strategy {}, turbine {}); it says little there",
-                    surrogate.name,
+                let sentence = format!(
+                    "{} of {} questions lie outside the {} to {} {} of {} that was trained on, the furthest is {} (strategy {}, turbine {}); little is known there",
                     out.len(),
                     points.len(),
+                    five_digits(*low),
+                    five_digits(*high),
                     port.unit,
                     port.name,
-                    points[*furthest][input],
+                    five_digits(points[*furthest][input]),
                     self.file.strategy[question.strategy].name,
                     self.file.turbine[question.turbine].name,
-                ));
+                );
+                match told.iter_mut().find(|(_, other)| *other == sentence) {
+                    Some((names, _)) => names.push(&surrogate.name),
+                    None => told.push((vec![&surrogate.name], sentence)),
+                }
             }
         }
-        Ok(told)
+        Ok(told.into_iter().map(|(names, told)| format!("{}: {told}", names.join(", "))).collect())
     }
 }
 

@@ -56,6 +56,16 @@ impl Over<'static> {
     };
 }
 
+/// The port as it is drawn, and what one of its unit is of that in which `means` are given: a turbine's watts
+/// have too many digits for an axis.
+fn drawn(port: &Port, means: impl IntoIterator<Item = f64>) -> (Port, f64) {
+    if port.unit == "W" && !report::are_of_models(means) {
+        (Port { unit: "MW".to_owned(), ..port.clone() }, 1e6)
+    } else {
+        (port.clone(), 1.0)
+    }
+}
+
 fn label(port: &Port) -> String {
     if port.unit.is_empty() { port.name.clone() } else { format!("{} ({})", port.name, port.unit) }
 }
@@ -69,10 +79,12 @@ fn file_name(over: &str, port: &Port) -> String {
 /// Output number `output` of `rows`, a panel for each turbine of each strategy.
 fn over(layout: &Layout, output: usize, over: Over, rows: &[LayoutRow]) -> CurveFigure {
     let scale = if over.scale == 0.0 { layout.diameter } else { over.scale };
+    let means = rows.iter().map(|row| row.predictions[output].mean);
+    let (port, unit) = drawn(&layout.outputs[output], means);
     let mut panels: Vec<(usize, usize, CurvePanel)> = Vec::new();
     for row in rows {
-        let Prediction { mean, .. } = row.predictions[output];
-        let band_95 = row.predictions[output].band_95();
+        let mean = row.predictions[output].mean / unit;
+        let band_95 = row.predictions[output].band_95().map(|end| end / unit);
         let at = CurveAt { at: row.at / scale, mean, band_95 };
         match panels.last_mut() {
             Some((strategy, turbine, panel))
@@ -90,13 +102,12 @@ fn over(layout: &Layout, output: usize, over: Over, rows: &[LayoutRow]) -> Curve
             }
         }
     }
-    let port = &layout.outputs[output];
     CurveFigure {
-        name: file_name(over.name, port),
+        name: file_name(over.name, &port),
         title: format!("{} over the {}", port.name, over.name),
         caption: over.about.to_owned(),
         along: over.along.to_owned(),
-        label: label(port),
+        label: label(&port),
         panels: panels.into_iter().map(|(.., panel)| panel).collect(),
     }
 }

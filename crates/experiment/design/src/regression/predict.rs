@@ -2,6 +2,7 @@
 
 use super::stored::{mean_curve, regression};
 use crate::DesignError;
+use crate::model::five_digits;
 use formats::surrogate_model::SurrogateModel;
 use formats::table::Samples;
 use std::path::{Path, PathBuf};
@@ -74,14 +75,16 @@ pub(super) fn outside(model: &SurrogateModel, samples: &Samples) -> Vec<String> 
         let furthest = rows.iter().max_by(|a, b| beyond(**a).total_cmp(&beyond(**b)))?;
         let port = &model.inputs[input];
         Some(format!(
-            "{}: {} of {} rows lie outside the {low} to {high} {} of {} that the surrogate was trained on, the first in line {}, the furthest {} in line {}; it says little there",
+            "{}: {} of {} rows lie outside the {} to {} {} of {} that the surrogate was trained on, the first in line {}, the furthest {} in line {}; it says little there",
             samples.path.display(),
             rows.len(),
             samples.lines.len(),
+            five_digits(*low),
+            five_digits(*high),
             port.unit,
             port.name,
             samples.lines[*first],
-            samples.row(*furthest)[input],
+            five_digits(samples.row(*furthest)[input]),
             samples.lines[*furthest],
         ))
     };

@@ -78,7 +78,7 @@ fn scatter(of: &SurrogateFigures) -> Option<Figure> {
     }
     let side = 420.0;
     let scale = Scale::around(of.pairs.iter().flatten().copied(), 0.05);
-    let area = [LEFT + 20.0, 24.0, side, side];
+    let area = [0.5 * (WIDTH - side), 24.0, side, side];
     let frame = Frame { area, x: scale, y: scale };
     let mut shapes = Vec::new();
     frame.rows(6, true, &mut shapes);
