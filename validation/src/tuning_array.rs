@@ -74,6 +74,9 @@ fn rows(tuned: &Tuned) -> Result<Vec<Row>, SearchError> {
         );
         let what = format!("gain of the array with the best {name} helix");
         rows.push(row(&what, 100.0 * value.mean, (gain, Within(within)), ("%", SOURCE)));
+        // A gain that nothing is known of could lie anywhere.
+        let what = format!("half of the 95 % interval of that gain, {name}");
+        rows.push(row(&what, 0.5 * (high - low), (within, AtMost), ("%", OWN)));
     }
     for ((name, published, within, unit), at) in PLACE.into_iter().zip(&found.optimum.point) {
         let what = format!("{name} of the optimum");
