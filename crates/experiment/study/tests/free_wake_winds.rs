@@ -133,10 +133,13 @@ fn files_of_wind_of_each_format_blow_alike() {
     let mean = analysis::statistics::mean(&full_field);
     assert!(analysis::statistics::standard_deviation(&full_field) > 0.05 * mean);
     for other in others {
-        for (one, other) in full_field.iter().zip(&other) {
-            // Two of the formats round to sixteen bits.
+        // Two of the formats round to sixteen bits, and free vortices take two winds that differ by a
+        // rounding ever further apart: instants are held together for the first half, the mean for all.
+        for (one, other) in full_field.iter().zip(&other).take(full_field.len() / 2) {
             assert!((one - other).abs() < 2e-3 * mean, "{one} and {other} kW");
         }
+        let other = analysis::statistics::mean(&other);
+        assert!((other - mean).abs() < 2e-3 * mean, "{other} and {mean} kW on average");
     }
 }
 
