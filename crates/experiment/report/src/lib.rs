@@ -29,7 +29,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 pub use study::colours;
-pub use units::are_of_models;
+pub use units::{Unit, Units, are_of_models};
 
 /// Files written by this process so far (–).
 static N_WRITTEN: AtomicU64 = AtomicU64::new(0);

@@ -7,17 +7,20 @@ const MODEL_POWER: f64 = 1e3;
 
 /// A unit that has a name and a size in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unit {
-    pub(crate) name: &'static str,
+pub struct Unit {
+    /// As readers are told.
+    pub name: &'static str,
     /// What one of it is (W, N).
-    pub(crate) size: f64,
+    pub size: f64,
 }
 
 /// What suits the turbines of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Units {
-    pub(crate) power: Unit,
-    pub(crate) thrust: Unit,
+pub struct Units {
+    /// Of powers.
+    pub power: Unit,
+    /// Of thrusts.
+    pub thrust: Unit,
 }
 
 impl Units {
@@ -27,7 +30,7 @@ impl Units {
         Self { power: Unit { name: "W", size: 1.0 }, thrust: Unit { name: "N", size: 1.0 } };
 
     /// For turbines whose mean `powers` (W) these are.
-    pub(crate) fn of(powers: impl IntoIterator<Item = f64>) -> Self {
+    pub fn of(powers: impl IntoIterator<Item = f64>) -> Self {
         if are_of_models(powers) { Self::OF_MODELS } else { Self::OF_TURBINES }
     }
 

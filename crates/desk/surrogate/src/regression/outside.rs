@@ -13,8 +13,31 @@ pub struct Outside {
     pub first: usize,
     /// The value that lies furthest outside (unit of the input).
     pub furthest: f64,
+    /// The point that has it.
+    pub furthest_point: usize,
     /// Least and greatest value that was observed (unit of the input).
     pub range: [f64; 2],
+}
+
+impl Outside {
+    /// What of the values `asked` of an `input` lies outside the `range` that was observed, more than the
+    /// rounding of numbers in files; none where nothing does.
+    pub fn of(input: usize, range: [f64; 2], asked: &[f64]) -> Option<Self> {
+        let [low, high] = range;
+        let bearing = 1e-9 * (high - low);
+        let beyond = |x: f64| (low - x).max(x - high);
+        let out: Vec<usize> = (0..asked.len()).filter(|at| beyond(asked[*at]) > bearing).collect();
+        let furthest_point =
+            out.iter().copied().max_by(|a, b| beyond(asked[*a]).total_cmp(&beyond(asked[*b])))?;
+        Some(Self {
+            input,
+            n_points: out.len(),
+            first: out[0],
+            furthest: asked[furthest_point],
+            furthest_point,
+            range,
+        })
+    }
 }
 
 impl Regression {
@@ -27,26 +50,11 @@ impl Regression {
                 let of = |all: &[f64]| -> Vec<f64> {
                     all.iter().skip(input).step_by(n_dimensions).copied().collect()
                 };
-                outside(input, &of(&collapsed), &of(inputs))
+                let observed = of(&collapsed);
+                let low = observed.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = observed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                Outside::of(input, [low, high], &of(inputs))
             })
             .collect()
     }
-}
-
-/// What of `asked` lies outside `observed`, more than the rounding of numbers in files.
-fn outside(input: usize, observed: &[f64], asked: &[f64]) -> Option<Outside> {
-    let low = observed.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = observed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let bearing = 1e-9 * (high - low);
-    let beyond = |x: f64| (low - x).max(x - high);
-    let out: Vec<usize> = (0..asked.len()).filter(|at| beyond(asked[*at]) > bearing).collect();
-    let furthest =
-        out.iter().copied().max_by(|a, b| beyond(asked[*a]).total_cmp(&beyond(asked[*b])))?;
-    Some(Outside {
-        input,
-        n_points: out.len(),
-        first: out[0],
-        furthest: asked[furthest],
-        range: [low, high],
-    })
 }

@@ -9,7 +9,7 @@ use formats::surrogate_model::SurrogateModel;
 use formats::{FileError, turbulence_box};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use surrogate::{Prediction, Regression};
+use surrogate::{Outside, Prediction, Regression};
 
 /// Where a surrogate's input comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,24 +242,20 @@ impl<'a> Asked<'a> {
         let mut told: Vec<(Vec<&str>, String)> = Vec::new();
         for surrogate in &self.surrogates {
             let points = self.points(surrogate, questions)?;
-            for (input, [low, high]) in surrogate.model.ranges.iter().enumerate() {
-                let bearing = 1e-9 * (high - low);
-                let beyond =
-                    |place: usize| (low - points[place][input]).max(points[place][input] - high);
-                let out: Vec<usize> =
-                    (0..points.len()).filter(|place| beyond(*place) > bearing).collect();
-                let furthest = out.iter().max_by(|a, b| beyond(**a).total_cmp(&beyond(**b)));
-                let Some(furthest) = furthest else { continue };
-                let (question, port) = (&questions[*furthest], &surrogate.model.inputs[input]);
+            for (input, range) in surrogate.model.ranges.iter().enumerate() {
+                let asked: Vec<f64> = points.iter().map(|point| point[input]).collect();
+                let Some(out) = Outside::of(input, *range, &asked) else { continue };
+                let question = &questions[out.furthest_point];
+                let port = &surrogate.model.inputs[input];
                 let sentence = format!(
                     "{} of {} questions lie outside the {} to {} {} of {} that was trained on, the furthest is {} (strategy {}, turbine {}); little is known there",
-                    out.len(),
+                    out.n_points,
                     points.len(),
-                    five_digits(*low),
-                    five_digits(*high),
+                    five_digits(range[0]),
+                    five_digits(range[1]),
                     port.unit,
                     port.name,
-                    five_digits(points[*furthest][input]),
+                    five_digits(out.furthest),
                     self.file.strategy[question.strategy].name,
                     self.file.turbine[question.turbine].name,
                 );

@@ -3,7 +3,7 @@
 use super::{Layout, LayoutRow, POWER, Uncertain, change};
 use crate::DesignError;
 use formats::linear_model::Port;
-use report::{CurveAt, CurveFigure, CurvePanel, Signals};
+use report::{CurveAt, CurveFigure, CurvePanel, Signals, Unit, Units};
 use std::path::Path;
 use surrogate::Prediction;
 
@@ -59,11 +59,11 @@ impl Over<'static> {
 /// The port as it is drawn, and what one of its unit is of that in which `means` are given: a turbine's watts
 /// have too many digits for an axis.
 fn drawn(port: &Port, means: impl IntoIterator<Item = f64>) -> (Port, f64) {
-    if port.unit == "W" && !report::are_of_models(means) {
-        (Port { unit: "MW".to_owned(), ..port.clone() }, 1e6)
-    } else {
-        (port.clone(), 1.0)
+    if port.unit != "W" {
+        return (port.clone(), 1.0);
     }
+    let Unit { name, size } = Units::of(means).power;
+    (Port { unit: name.to_owned(), ..port.clone() }, size)
 }
 
 fn label(port: &Port) -> String {

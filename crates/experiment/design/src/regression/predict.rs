@@ -6,6 +6,7 @@ use crate::model::five_digits;
 use formats::surrogate_model::SurrogateModel;
 use formats::table::Samples;
 use std::path::{Path, PathBuf};
+use surrogate::Outside;
 
 /// What to ask a surrogate.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,29 +64,22 @@ pub fn predict(question: &PredictQuestion) -> Result<Predicted, DesignError> {
 
 /// A sentence for each input whose values leave what the surrogate was trained on.
 pub(super) fn outside(model: &SurrogateModel, samples: &Samples) -> Vec<String> {
-    let of_input = |(input, [low, high]): (usize, &[f64; 2])| {
-        let bearing = 1e-9 * (high - low);
-        let beyond = |row: usize| {
-            let value = samples.row(row)[input];
-            (low - value).max(value - high)
-        };
-        let rows: Vec<usize> =
-            (0..samples.lines.len()).filter(|row| beyond(*row) > bearing).collect();
-        let first = rows.first()?;
-        let furthest = rows.iter().max_by(|a, b| beyond(**a).total_cmp(&beyond(**b)))?;
+    let of_input = |(input, range): (usize, &[f64; 2])| {
+        let asked: Vec<f64> = (0..samples.lines.len()).map(|row| samples.row(row)[input]).collect();
+        let out = Outside::of(input, *range, &asked)?;
         let port = &model.inputs[input];
         Some(format!(
             "{}: {} of {} rows lie outside the {} to {} {} of {} that the surrogate was trained on, the first in line {}, the furthest {} in line {}; it says little there",
             samples.path.display(),
-            rows.len(),
+            out.n_points,
             samples.lines.len(),
-            five_digits(*low),
-            five_digits(*high),
+            five_digits(range[0]),
+            five_digits(range[1]),
             port.unit,
             port.name,
-            samples.lines[*first],
-            five_digits(samples.row(*furthest)[input]),
-            samples.lines[*furthest],
+            samples.lines[out.first],
+            five_digits(out.furthest),
+            samples.lines[out.furthest_point],
         ))
     };
     model.ranges.iter().enumerate().filter_map(of_input).collect()
